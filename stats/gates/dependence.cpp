@@ -26,7 +26,10 @@ class Sequence {
     if (moments.m2 == 0) throw ZeroVariance(std::string(function) + ": zero variance");
     mean_ = moments.mean;
     sum_of_squares_ = moments.m2;
+    skewness_ = moments.skewness();
   }
+
+  double skewness() const { return skewness_; }
 
   double correlation(std::size_t lag) const {
     double sum = 0;
@@ -40,7 +43,11 @@ class Sequence {
   std::span<const double> values_;
   double mean_ = 0;
   double sum_of_squares_ = 0;
+  double skewness_ = 0;
 };
+
+// Half the degrees of the chi-square law whose skewness is s; 0 stands for the normal law.
+double shape_of(double s) { return s > 1e-4 ? 4 / (s * s) : 0; }
 
 constexpr std::size_t most_lags = 1000;
 constexpr std::size_t most_products = 200'000'000;
@@ -64,12 +71,26 @@ double autocorrelation(std::span<const double> values, std::size_t lag) {
 }
 
 TestResult lag_one_test(std::span<const double> values, const char* caller) {
-  const double r = Sequence(caller, values, 4).correlation(1);
+  const Sequence sequence(caller, values, 4);
+  const double r = sequence.correlation(1);
   const double n = static_cast<double>(values.size());
   const double variance = (n * n * n * n - 4 * n * n * n + 3 * n * n + 4 * n - 4) /
                           ((n + 1) * n * n * (n - 1) * (n - 1));
   const double z = (r + 1 / n) / std::sqrt(variance);
-  return by_tails(z, {"normal", {}}, normal_tails(z));
+  const double s = sequence.skewness() * sequence.skewness() / std::sqrt(n);
+  LogTails tails = normal_tails(z);
+  const double shape = shape_of(s);
+  const double at = shape + z * std::sqrt(shape);
+  if (z > 0 && shape > 0) tails.upper = chi_square_tails(2 * at, 2 * shape).upper;
+  return by_tails(z, {"pearson-iii", {s}}, tails);
+}
+
+double lag_one_critical(const TestResult& test, double probability) {
+  const double shape = shape_of(test.distribution.parameters[0]);
+  if (test.statistic < 0) return -upper_normal_quantile(probability);
+  if (shape == 0) return upper_normal_quantile(probability);
+  const double at = chi_square_quantile({Tail::upper, std::log(probability)}, 2 * shape) / 2;
+  return (at - shape) / std::sqrt(shape);
 }
 
 double effective_sample_size(std::span<const double> values) {

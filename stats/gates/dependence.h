@@ -19,11 +19,14 @@ double autocorrelation(std::span<const double> values, std::size_t lag);
 // Null hypothesis: independent values of one law.
 //   Z = (r_1 + 1/n) / sqrt(V).
 //   V = (n^4 - 4 n^3 + 3 n^2 + 4 n - 4) / ((n + 1) n^2 (n - 1)^2).
-// The law of Z is taken for normal. Mean and variance of r_1 are exact for normal data (Dufour &
-// Roy 1985, J. Econometrics 29). They hold to first order for any law with a variance (Anderson &
-// Walker 1964). log_p_upper is the tail of positive correlation. Throws std::domain_error for
-// n < 4 and non-finite values, ZeroVariance.
+// Mean and variance of r_1 are exact for normal data (Dufour & Roy 1985, J. Econometrics 29). They
+// hold to first order for any law with a variance (Anderson & Walker 1964). So does its skewness, s
+// = g^2 / sqrt n, where g is that of the values. log_p_upper is the tail of positive correlation.
+// It is that of Pearson's law of type III with the skewness s. log_p_lower is normal. Throws
+// std::domain_error for n < 4 and non-finite values, ZeroVariance.
 TestResult lag_one_test(std::span<const double> values, const char* caller = "lag_one_test");
+// The Z of the same sign whose tail has this probability.
+double lag_one_critical(const TestResult& test, double probability);
 
 // Effective sample size n / tau, tau = -1 + 2 sum Gamma_m, Gamma_m = r_2m + r_(2m+1). The sum runs
 // while Gamma_m is positive, made monotone (Geyer 1992, Stat. Sci. 7, section 3.3). It is about n

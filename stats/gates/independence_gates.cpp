@@ -61,15 +61,19 @@ BatchRatio batch_ratio(const char* caller, std::span<const double> values, std::
   for (const double value : values.first(used)) all.add(value);
   const double b = static_cast<double>(length);
   const double within = all.m2 - b * means.m2;
-  const FDegrees degrees{.numerator = static_cast<double>(means.count - 1),
-                         .denominator = static_cast<double>(used - means.count)};
+  // A sum of squares has fewer degrees where the values' excess kurtosis is positive (Box 1953).
+  const double excess = all.m2 > 0 ? std::max(0.0, all.kurtosis() - 3) : 0;
+  const FDegrees plain{.numerator = static_cast<double>(means.count - 1),
+                       .denominator = static_cast<double>(used - means.count)};
+  const FDegrees degrees{.numerator = plain.numerator / (1 + excess / b / 2),
+                         .denominator = plain.denominator / (1 + excess / 2)};
   const bool varies = std::ranges::any_of(values, [&](double x) { return x != values[0]; });
   if (!varies) throw ZeroVariance(std::string(caller) + ": zero variance");
   // Batches without any spread, beside values after the last one, tell nothing.
   if (all.m2 == 0) return {.value = 1, .degrees = degrees};
   // Batches that are constant within themselves leave nothing to divide by. They are as dependent
   // as can be.
-  const double ratio = within > 0 ? b * means.variance() / (within / degrees.denominator)
+  const double ratio = within > 0 ? b * means.variance() / (within / plain.denominator)
                                   : std::numeric_limits<double>::infinity();
   return {.value = ratio, .degrees = degrees};
 }
@@ -128,16 +132,17 @@ Gate gate_of_rank_batches(std::span<const double> values) {
 }  // namespace
 
 Gate lag_one_gate(std::span<const double> values) {
-  const double z = lag_one_test(values, "lag_one_gate").statistic;
+  const TestResult test = lag_one_test(values, "lag_one_gate");
+  const double z = test.statistic;
   const double r = autocorrelation(values, 1);
   const double n = static_cast<double>(values.size());
-  // z = (r + 1/n) / deviation. The limit is the r of the same sign that is as far out.
+  // z = (r + 1/n) / deviation.
   const double deviation = z == 0 ? 1 / std::sqrt(n) : (r + 1 / n) / z;
-  const double sign = z < 0 ? -1 : 1;
+  const auto critical = [&](double error) { return lag_one_critical(test, error / 2); };
   Gate gate{.name = "correlation of successive values", .value = r, .low = r};
-  gate.limit = sign * upper_normal_quantile(false_red_of_dependence / 2) * deviation - 1 / n;
-  gate.state = state_at(std::abs(z), upper_normal_quantile(false_amber / 2),
-                        upper_normal_quantile(false_red_of_dependence / 2));
+  gate.limit = critical(false_red_of_dependence) * deviation - 1 / n;
+  gate.state = state_at(std::abs(z), std::abs(critical(false_amber)),
+                        std::abs(critical(false_red_of_dependence)));
   return gate;
 }
 
@@ -191,8 +196,8 @@ double autocorrelation_time(std::span<const double> values) {
 
 double allowance_for_dependence(std::span<const double> values) {
   const std::size_t n = values.size();
-  bool doubtful = lag_one_test(values, "allowance_for_dependence").statistic >
-                  upper_normal_quantile(false_allowance);
+  bool doubtful =
+      lag_one_test(values, "allowance_for_dependence").log_p_upper < std::log(false_allowance);
   double factor = 1;
   for (const std::size_t length : {default_batch(n), n / 10}) {
     if (length < default_batch(n)) continue;

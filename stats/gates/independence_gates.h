@@ -19,8 +19,10 @@ Gate lag_one_gate(std::span<const double> values);
 // Value: n_b Var(batch means) / Var within batches, for batches of floor(sqrt n). The rest at the
 // end is left out. It is 1 for independent values, and about the integrated autocorrelation time if
 // that is long. For independent normal values it is exactly F with (batches - 1, batches (length -
-// 1)) degrees of freedom. Limit: its upper quantile at 5e-5. Green up to that at .01. Sees drifts
-// and slow chains that lag one does not. Throws std::domain_error for n < 9; ZeroVariance.
+// 1)) degrees of freedom. An excess kurtosis k of the values divides the former by 1 + k / (2
+// length), the latter by 1 + k / 2 (Box 1953). Limit: its upper quantile at 5e-5. Green up to that
+// at .01. Sees drifts and slow chains that lag one does not. Throws std::domain_error for n < 9;
+// ZeroVariance.
 Gate batch_gate(std::span<const double> values);
 
 // Value: the rank correlation (dependence.h) that is farthest from 0, over lags 2 to K.
@@ -48,7 +50,7 @@ std::vector<Gate> drawn_order_gates(std::span<const double> values);
 double autocorrelation_time(std::span<const double> values);
 // Factor for the variance of a mean of n values, for a dependence too weak for the gates. It is the
 // larger of autocorrelation_time and the F of batches of floor(sqrt n) or n / 10. It applies only
-// if the z of r_1 or that F is beyond what independent values exceed with probability .05.
+// if the r_1 or that F is beyond what independent values exceed with probability .05.
 // Otherwise it is 1. It at best halves the errors of a slow chain under much noise. Throws as
 // batch_gate.
 double allowance_for_dependence(std::span<const double> values);

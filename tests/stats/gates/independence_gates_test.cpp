@@ -23,6 +23,21 @@ TEST(IndependenceGates, AreSilentOnIndependentValues) {
   EXPECT_LE(std::max({lag, batch, lagged}), 8);
 }
 
+// Rare values that happen to be neighbours, or in one batch, are no dependence. With a normal law
+// of the correlation .009 are red.
+TEST(IndependenceGates, AreSeldomRedOnRareValues) {
+  Philox random(4);
+  int lag = 0, batch = 0;
+  for (int k = 0; k < 4000; ++k) {
+    const auto x = sample_of(300, [&] { return random.uniform() < .02 ? 1.0 : 0.0; });
+    if (std::ranges::count(x, 1.0) == 0) continue;
+    lag += is_red(lag_one_gate(x));
+    batch += is_red(batch_gate(x));
+  }
+  EXPECT_LE(lag, 2);
+  EXPECT_LE(batch, 8) << "of 4000; 2 are expected";
+}
+
 // Any law will do: in ranks two values far out are no correlation.
 TEST(IndependenceGates, OfLagsAreSilentOnHeavyTailsAndTies) {
   Philox random(5);
