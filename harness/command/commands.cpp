@@ -78,7 +78,9 @@ int run_suites(const std::vector<Suite>& suites, const RunOptions& options, cons
     drawn.executor = checkpoint;
   }
   const auto broken = [&](const reports::Test& test) {
-    if (tell_broken(reports::told_once(test, errors), output)) told.insert(test.id);
+    reports::tell_once(test, errors, [&](const reports::Test& each) {
+      if (tell_broken(each, output)) told.insert(each.id);
+    });
   };
   reports::Record record = run(suites, drawn, *progress, broken, &ledger_fault);
   Output last = output;

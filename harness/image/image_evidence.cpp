@@ -271,10 +271,11 @@ ChannelEvidence evidence_of_images(const Seen& seen, const ImageTest& test) {
   outcome.replicates = look.pictures;
   outcome.family = std::move(look.family);
   outcome.z = std::move(look.z);
+  const double share = share_of_distance(question);
   stats::add_unseen(outcome.unseen, extent, outcome.family);
-  stats::leave_share(outcome.family, share_of_distance(question));
-  note_errors(look.means, relative, (1 - share_of_distance(question)) * test.share.alpha,
-              test.share.beta, outcome);
+  stats::leave_share(outcome.family, share);
+  stats::decide(outcome.family);
+  note_errors(look.means, relative, (1 - share) * test.share.alpha, test.share.beta, outcome);
   const stats::ImageFamily& family = outcome.family;
   // Differences of pairs are held against 0.
   const stats::ChannelMeans other =
@@ -284,7 +285,7 @@ ChannelEvidence evidence_of_images(const Seen& seen, const ImageTest& test) {
       .hidden = std::sqrt(family.hidden_squares / distance.squared_norm),
       .hidden_of_twice = std::sqrt(family.hidden_squares_of_twice / distance.squared_norm),
       .of_means = stats::distances_of_means(look.means[0], other, extent, distance.squared_norm),
-      .share = share_of_distance(question)};
+      .share = share};
   const TestEntry& entry = *question.test;
   const bool within = entry.claim.relation == Relation::within;
   if (within || entry.detect) {

@@ -19,8 +19,8 @@ namespace assay::harness {
 namespace {
 
 /// The mean of a subject over elements, by their weights or plain.
-double mean_over(const DrawnTest& test, std::size_t subject,
-                 const std::vector<std::size_t>& elements, std::span<const float> weights) {
+double mean_over(const DrawnTest& test, std::size_t subject, std::span<const std::size_t> elements,
+                 std::span<const float> weights) {
   const Question& question = test.outcome.question;
   const bool numbers = subject >= question.subjects.size();
   double sum = 0;
@@ -38,7 +38,7 @@ double mean_over(const DrawnTest& test, std::size_t subject,
 }
 
 /// The mean of what the first image is held against.
-double other_mean(const DrawnTest& test, const std::vector<std::size_t>& elements,
+double other_mean(const DrawnTest& test, std::span<const std::size_t> elements,
                   std::span<const float> weights) {
   const Question& question = test.outcome.question;
   const double mean = mean_over(test, 1, elements, weights);
@@ -50,10 +50,10 @@ double other_mean(const DrawnTest& test, const std::vector<std::size_t>& element
 double error_over(const DrawnTest& test, const std::vector<std::size_t>& elements) {
   const std::vector<double>& z = test.outcome.channels[0].image->z;
   double squares = 0;
-  for (const std::size_t i : elements) {
-    const std::vector<std::size_t> one{i};
-    const double difference = mean_over(test, 0, one, {}) - other_mean(test, one, {});
-    if (z[i] != 0) squares += std::pow(difference / z[i], 2);
+  for (const std::size_t& i : elements) {
+    if (z[i] == 0) continue;
+    const std::span one(&i, 1);
+    squares += std::pow((mean_over(test, 0, one, {}) - other_mean(test, one, {})) / z[i], 2);
   }
   return std::sqrt(squares) / static_cast<double>(elements.size());
 }
@@ -188,13 +188,13 @@ std::string others_at(const DrawnTest& test, const PlaceEffect& place) {
     }
     const double base = other_mean(test, elements, {});
     const double difference = mean_over(test, 0, elements, {}) - base;
-    const double error = clear * error_over(test, elements);
+    const auto error = [&] { return clear * error_over(test, elements); };
     // Pixels count as independent, each as clear as the others or as noisy as it is.
     const double root = std::sqrt(static_cast<double>(elements.size()));
     const bool by_each = std::abs(sum) > clear * root && difference * sum > 0;
-    const bool is_clear = c == mine ? difference < place.interval.low - error ||
-                                          difference > place.interval.high + error
-                                    : by_each || std::abs(difference) > error;
+    const auto& [low, high, confidence] = place.interval;
+    const bool is_clear = c == mine ? std::max(low - difference, difference - high) > error()
+                                    : by_each || std::abs(difference) > error();
     if (!is_clear) continue;
     const reports::Effect effect{.relative = base != 0};
     const double unit = effect.relative ? std::abs(base) : 1;

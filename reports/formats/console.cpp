@@ -60,8 +60,9 @@ class Screen {
     std::map<std::string, std::string> errors;
     for (const Test* test : tests_of(record)) {
       if (!is_trouble(standing(*test)) || in_full()) continue;
-      const Test each = told_once(*test, errors);
-      if (!told.contains(test->id)) block(each);
+      tell_once(*test, errors, [&](const Test& each) {
+        if (!told.contains(each.id)) block(each);
+      });
     }
     left_out(record);
     std::uint64_t retries = 0;

@@ -362,11 +362,14 @@ std::string trouble(const Test& test) {
   return test.verdict == Verdict::skipped ? test.message : without_advice(headline(test), test);
 }
 
-Test told_once(Test test, std::map<std::string, std::string>& first) {
-  if (test.verdict != Verdict::error) return test;
+void tell_once(const Test& test, std::map<std::string, std::string>& first,
+               const std::function<void(const Test&)>& tell) {
+  if (test.verdict != Verdict::error) return tell(test);
   const std::string& id = first.emplace(test.message, test.id).first->second;
-  if (id != test.id) test.message = fmt::format("the same error as `{}`", id);
-  return test;
+  if (id == test.id) return tell(test);
+  Test again = test;
+  again.message = fmt::format("the same error as `{}`", id);
+  tell(again);
 }
 
 std::vector<Step> steps(const Test& test) {

@@ -3,6 +3,7 @@
 // These words all reports share, and the steps to take about a claim that is not as it should be.
 // The JSON record holds them as `display`.
 
+#include <functional>
 #include <map>
 #include <optional>
 #include <string>
@@ -122,8 +123,10 @@ RecordDisplay display(const Record&);
 /// The trouble with a claim, without a p-value where it can be said so, and without its advice.
 std::string trouble(const Test&);
 
-/// An error that an earlier test had gives that test's name. `first` has ids by message.
-Test told_once(Test test, std::map<std::string, std::string>& first);
+/// Tells the test. An error that an earlier test had gives that test's name. `first` has ids by
+/// message.
+void tell_once(const Test& test, std::map<std::string, std::string>& first,
+               const std::function<void(const Test&)>& tell);
 
 /// The command that tells more of a test.
 Step explanation(const Test&);

@@ -46,8 +46,10 @@ class Sequence {
   double skewness_ = 0;
 };
 
-// Half the degrees of the chi-square law whose skewness is s; 0 stands for the normal law.
-double shape_of(double s) { return s > 1e-4 ? 4 / (s * s) : 0; }
+// Half the degrees of the chi-square law whose skewness is s; none if it is as good as normal.
+std::optional<double> shape_of(double s) {
+  return s > 1e-4 ? std::optional(4 / (s * s)) : std::nullopt;
+}
 
 constexpr std::size_t most_lags = 1000;
 constexpr std::size_t most_products = 200'000'000;
@@ -79,18 +81,18 @@ TestResult lag_one_test(std::span<const double> values, const char* caller) {
   const double z = (r + 1 / n) / std::sqrt(variance);
   const double s = sequence.skewness() * sequence.skewness() / std::sqrt(n);
   LogTails tails = normal_tails(z);
-  const double shape = shape_of(s);
-  const double at = shape + z * std::sqrt(shape);
-  if (z > 0 && shape > 0) tails.upper = chi_square_tails(2 * at, 2 * shape).upper;
+  if (const auto shape = shape_of(s); shape && z > 0) {
+    tails.upper = chi_square_tails(2 * (*shape + z * std::sqrt(*shape)), 2 * *shape).upper;
+  }
   return by_tails(z, {"pearson-iii", {s}}, tails);
 }
 
 double lag_one_critical(const TestResult& test, double probability) {
-  const double shape = shape_of(test.distribution.parameters[0]);
+  const auto shape = shape_of(test.distribution.parameters[0]);
   if (test.statistic < 0) return -upper_normal_quantile(probability);
-  if (shape == 0) return upper_normal_quantile(probability);
-  const double at = chi_square_quantile({Tail::upper, std::log(probability)}, 2 * shape) / 2;
-  return (at - shape) / std::sqrt(shape);
+  if (!shape) return upper_normal_quantile(probability);
+  const double at = chi_square_quantile({Tail::upper, std::log(probability)}, 2 * *shape) / 2;
+  return (at - *shape) / std::sqrt(*shape);
 }
 
 double effective_sample_size(std::span<const double> values) {

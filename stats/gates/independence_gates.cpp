@@ -61,16 +61,18 @@ BatchRatio batch_ratio(const char* caller, std::span<const double> values, std::
   for (const double value : values.first(used)) all.add(value);
   const double b = static_cast<double>(length);
   const double within = all.m2 - b * means.m2;
-  // A sum of squares has fewer degrees where the values' excess kurtosis is positive (Box 1953).
-  const double excess = all.m2 > 0 ? std::max(0.0, all.kurtosis() - 3) : 0;
   const FDegrees plain{.numerator = static_cast<double>(means.count - 1),
                        .denominator = static_cast<double>(used - means.count)};
+  if (all.m2 == 0) {
+    if (std::ranges::count(values, values[0]) == std::ssize(values))
+      throw ZeroVariance(std::string(caller) + ": zero variance");
+    // Batches without any spread, beside values after the last one, tell nothing.
+    return {.value = 1, .degrees = plain};
+  }
+  // A sum of squares has fewer degrees where the values' excess kurtosis is positive (Box 1953).
+  const double excess = std::max(0.0, all.kurtosis() - 3);
   const FDegrees degrees{.numerator = plain.numerator / (1 + excess / b / 2),
                          .denominator = plain.denominator / (1 + excess / 2)};
-  const bool varies = std::ranges::any_of(values, [&](double x) { return x != values[0]; });
-  if (!varies) throw ZeroVariance(std::string(caller) + ": zero variance");
-  // Batches without any spread, beside values after the last one, tell nothing.
-  if (all.m2 == 0) return {.value = 1, .degrees = degrees};
   // Batches that are constant within themselves leave nothing to divide by. They are as dependent
   // as can be.
   const double ratio = within > 0 ? b * means.variance() / (within / plain.denominator)

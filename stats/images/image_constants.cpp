@@ -157,7 +157,6 @@ void add_unseen(std::span<const UnseenElement> unseen, const ImageExtent& extent
                 ImageFamily& family) {
   leave_share(family, unseen_share);
   if (!unseen.empty()) family.groups.push_back(finding_of(unseen, extent));
-  decide(family);
 }
 
 ImageConstants settle_constants(SettledSide declared, std::vector<double>& reference,

@@ -42,7 +42,7 @@ struct UnseenElement {
 // The normal z of its p-value, with the difference's sign.
 double z_of(const UnseenElement& unseen);
 
-// Adds the elements that never varied to a family of groups, at 2 % of its level.
+// Adds the elements that never varied to a family of groups, at 2 % of its level. Decide after it.
 void add_unseen(std::span<const UnseenElement> unseen, const ImageExtent& extent,
                 ImageFamily& family);
 

@@ -162,7 +162,6 @@ void leave_share(ImageFamily& family, double share) {
   for (ImageFinding& group : family.groups) {
     group.adjusted_log_p = std::min(0.0, group.adjusted_log_p - std::log1p(-share));
   }
-  decide(family);
 }
 
 void decide(ImageFamily& family) {

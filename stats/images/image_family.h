@@ -144,7 +144,7 @@ inline constexpr double confidence_at_place = 0.99;
 // elements around it tell nothing. Signs in turn win only where there is no such cell.
 void decide(ImageFamily& family);
 
-// Leaves this share of the family's level to other tests: adjusted p-values grow.
+// Leaves this share of the family's level to other tests: adjusted p-values grow. Decide after it.
 void leave_share(ImageFamily& family, double share);
 
 // Each of different constants has this z: no double is as small as the normal tail beyond.
