@@ -367,7 +367,7 @@ std::vector<Method> methods_of_means() {
        evidence_of_means<stats::mean_by_t>, of_scores},
       {"tost", "two one-sided t tests: a mean lies within a margin", is_within, Keeps::moments,
        evidence_of_means<stats::mean_by_t>, of_scores},
-      {"skewness-corrected-t", "t or Welch with Hall's correction for the skewness of the values",
+      {"skewness-corrected-t", "t or Welch, both with and without Hall's correction for skewness",
        any_question, Keeps::moments, evidence_of_means<stats::mean_by_corrected_t>, corrected},
       {"binomial", "exact: a mean of values that are the two ends of a range", any_question,
        Keeps::moments, evidence_of_means<stats::mean_by_counts>, of_counts},

@@ -235,12 +235,13 @@ Evidence by_influence(const Seen& seen) {
 
 /// The row of the one method of influence values, for a family that keeps them so.
 Method influence_row(bool (*answers)(const Question&), Keeps keeps) {
-  return {"influence-t",
-          "Student's t of influence values with Hall's correction: variances, costs, efficiencies",
-          answers,
-          keeps,
-          by_influence,
-          of_scores};
+  return {
+      "influence-t",
+      "t of influence values, with and without Hall's correction: variances, costs, efficiencies",
+      answers,
+      keeps,
+      by_influence,
+      of_scores};
 }
 
 // ---- Variances

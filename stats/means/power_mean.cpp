@@ -36,12 +36,14 @@ class Power {
   }
   double near(EffectPlan effect) const {
     const double up = noncentrality(effect.detect - effect.allow);
-    return std::exp(noncentral_t_tails(critical_, {scale_.degrees, up}).upper);
+    const double both = std::max(critical_, without_skewness(critical_, scale_.a));
+    return std::exp(noncentral_t_tails(both, {scale_.degrees, up}).upper);
   }
   double far(EffectPlan effect) const {
     if (!rates_.two_sided) return 0;
     const double down = noncentrality(effect.detect + effect.allow);
-    return std::exp(noncentral_t_tails(-critical_, {scale_.degrees, down}).lower);
+    const double both = std::min(-critical_, without_skewness(-critical_, scale_.a));
+    return std::exp(noncentral_t_tails(both, {scale_.degrees, down}).lower);
   }
 
   Studentised scale_;

@@ -69,9 +69,13 @@ Combination combination(const char* caller, const Moments& x, const Moments& y, 
 }
 
 TestResult result_of(const char* caller, double difference, const Combination& means) {
-  const double h = without_skewness(difference / means.standard_error(), means.a());
+  const double t = difference / means.standard_error();
+  const double h = without_skewness(t, means.a());
   check::finite({caller, "transformed statistic"}, h);
-  return by_tails(h, {"student-t", {means.degrees}}, student_t_tails(h, means.degrees));
+  const LogTails plain = student_t_tails(t, means.degrees);
+  const LogTails corrected = student_t_tails(h, means.degrees);
+  return by_tails(std::clamp(0.0, std::min(t, h), std::max(t, h)), {"student-t", {means.degrees}},
+                  {std::max(plain.lower, corrected.lower), std::max(plain.upper, corrected.upper)});
 }
 
 // ---- The remaining error
@@ -99,13 +103,13 @@ double level_factor(const Combination& means, double x, double (*excess_kurtosis
 
 constexpr const char* of_gate = "residual_skewness_gate";
 
-Gate gate_of(const Combination& means, double critical_value) {
-  check::positive({of_gate, "critical_value"}, critical_value);
-  return judged({.name = "level factor after correction",
-                 .value = level_factor(means, critical_value, excess_or_zero),
-                 .low = level_factor(means, critical_value, lower_excess),
-                 .limit = 2},
-                1.25);
+Gate gate_of(const Combination& means, const Gate& plain, double critical_value) {
+  return judged(
+      {.name = "level factor after correction",
+       .value = std::min(plain.value, level_factor(means, critical_value, excess_or_zero)),
+       .low = std::min(plain.low, level_factor(means, critical_value, lower_excess)),
+       .limit = 2},
+      1.25);
 }
 
 }  // namespace
@@ -122,12 +126,18 @@ TestResult skewness_corrected_welch(const Moments& x, const Moments& y, Contrast
 }
 
 Gate residual_skewness_gate(const Moments& x, Reference null_mean, double critical_value) {
-  return gate_of(combination(of_gate, x, null_mean), critical_value);
+  const Combination means = combination(of_gate, x, null_mean);
+  check::positive({of_gate, "critical_value"}, critical_value);
+  // A constant is not skewed.
+  const Gate plain = x.m2 > 0 ? skewness_gate(x, critical_value) : Gate{.value = 1, .low = 1};
+  return gate_of(means, plain, critical_value);
 }
 
 Gate residual_skewness_gate(const Moments& x, const Moments& y, double scale,
                             double critical_value) {
-  return gate_of(combination(of_gate, x, y, scale), critical_value);
+  const Combination means = combination(of_gate, x, y, scale);
+  check::positive({of_gate, "critical_value"}, critical_value);
+  return gate_of(means, skewness_gate(x, y, scale, critical_value), critical_value);
 }
 
 }  // namespace assay::stats

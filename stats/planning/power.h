@@ -40,8 +40,9 @@ double planned_variance(const Moments& pilot);
 // n * allocation observations. With v the planned
 // variances of the means and of the reference, the degrees of freedom are Welch-Satterthwaite's:
 //   (sum v)^2 / (v_x^2 / (n_x - 1) + v_y^2 / (n_y - 1)).
-// With a skewness the test is corrected for it. The noncentrality is then T_H - a at T = effect /
-// standard error (skewness_corrected_t.h). An effect away from the long tail needs more.
+// With a skewness the test is corrected for it (skewness_corrected_t.h). The noncentrality is then
+// T_H - a at T = effect / standard error. The critical value c is that of T and T_H both: T_H at c
+// where it is farther out. An effect away from the long tail needs more.
 struct MeanPlan {
   double standard_deviation = 1;
   double other_standard_deviation = 0;  // The second sample's, times the contrast's scale.

@@ -30,6 +30,12 @@ def sixth_skewness(psi, extra=0.0):
     return (psi**3).sum() / (6 * ((psi**2).sum() + extra) ** 1.5)
 
 
+def nearer_to_zero(t, psi, nu, extra=0.0):
+    """The one nearer to 0 of T and the transformed T, or 0 between them; ln of the larger tails."""
+    both = np.array([t, transformed(t, sixth_skewness(psi, extra))])
+    return [np.median([*both, 0]), stats.t.logcdf(both, nu).max(), stats.t.logsf(both, nu).max()]
+
+
 def skewness_rows():
     for k in range(1, 7):
         x, y = skewed(k, 20 * k), skewed(k + 2, 15 * k)
@@ -38,15 +44,12 @@ def skewness_rows():
         v = x.var(ddof=1) / len(x)
         nu = (v + error**2) ** 2 / (v**2 / (len(x) - 1))
         psi = (x - x.mean()) / len(x)
-        one = transformed((x.mean() - null) / math.sqrt(v + error**2),
-                          sixth_skewness(psi, error**2))
+        one = nearer_to_zero((x.mean() - null) / math.sqrt(v + error**2), psi, nu, error**2)
         w = scale**2 * y.var(ddof=1) / len(y)
         nu2 = (v + w) ** 2 / (v**2 / (len(x) - 1) + w**2 / (len(y) - 1))
         both = np.concatenate([psi, -scale * (y - y.mean()) / len(y)])
-        two = transformed((x.mean() - scale * y.mean() - offset) / math.sqrt(v + w),
-                          sixth_skewness(both))
-        yield [k, null, error, scale, offset, one, stats.t.logcdf(one, nu), stats.t.logsf(one, nu),
-               two, stats.t.logcdf(two, nu2), stats.t.logsf(two, nu2)]
+        two = nearer_to_zero((x.mean() - scale * y.mean() - offset) / math.sqrt(v + w), both, nu2)
+        yield [k, null, error, scale, offset, *map(float, one), *map(float, two)]
 
 
 def fractions(k, n):

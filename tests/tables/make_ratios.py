@@ -41,7 +41,8 @@ def influence(x, c=None, truth=None):
 
 
 def hall(parts, difference):
-    """Student's t of sum w mean(psi) with Hall's correction, and its upper p. `parts`: w, psi, second."""
+    """Of Student's t of sum w mean(psi) and of its correction by Hall: the one nearer to 0, or 0 between
+    them, and the larger upper p. `parts`: w, psi, second."""
     variance = [w**2 * (np.var(psi, ddof=1) / len(psi) + second) for w, psi, second in parts]
     t = difference / math.sqrt(sum(variance))
     degrees = sum(variance) ** 2 / sum(v**2 / (len(p[1]) - 1) for v, p in zip(variance, parts))
@@ -50,7 +51,7 @@ def hall(parts, difference):
                 for w, psi, second in parts)
     a = third / plain**1.5 / 6
     corrected = ((1 + 2 * a * t) ** 3 - 1) / (6 * a) + a
-    return corrected, stats.t.sf(corrected, degrees)
+    return np.median([t, corrected, 0]), stats.t.sf(min(t, corrected), degrees)
 
 
 def of_one(x, distance):
