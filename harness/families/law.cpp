@@ -464,6 +464,12 @@ class DensityTheta final : public LawTheta {
  public:
   DensityTheta() : LawTheta({.of_single_values = true, .of_a_law = true}) {}
 
+  /// Cells of fewer expected draws are one cell. The floor keeps those rare of which `detect` says
+  /// nothing.
+  std::uint64_t choose(TestOutcome& test, const Pilots&) const override {
+    return secondaries_of_floor(test);
+  }
+
   /// No sampler can follow a density whose integral exceeds 1. One draw where the density is 0
   /// refutes the claim, whatever its margins.
   std::optional<ConstantVerdict> settled(const Seen& seen, const Regions&) const override {
