@@ -10,7 +10,6 @@
 #include "harness/plan/sizes.h"
 #include "harness/question/question.h"
 #include "harness/run/evaluate.h"
-#include "harness/run/observation_faults.h"
 #include "stats/means/binomial.h"
 #include "stats/tails/tails.h"
 

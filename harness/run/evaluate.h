@@ -41,6 +41,15 @@ void take_look(TestWork& work, bool may_go_on = true);
 
 std::vector<ChannelData> data_of(const DrawnTest& test, std::size_t channel);
 
+/// Says what to do about pixels that are not finite.
+constexpr const char* leave_out_nonfinite =
+    ": mend the renderer, or leave such pixels out by `--ignore nonfinite` (in a suite by "
+    "`finite`), which hides what is wrong there";
+/// True of equal numbers, and of two that are none.
+bool same_number(double one, double other);
+/// The first draw that contradicts its sampler, in a clause; "" if none does.
+std::string first_contradiction(const DrawnTest& test);
+
 /// A tested claim's verdict in one or two sentences. They say what was found, what is excluded, and
 /// what could be missed or how many more samples would decide.
 Reason narrate(const TestOutcome& outcome);

@@ -18,7 +18,7 @@
 #include "harness/base/parallel.h"
 #include "harness/image/image_pair.h"
 #include "harness/plan/sizes.h"
-#include "harness/run/observation_faults.h"
+#include "harness/run/evaluate.h"
 #include "stats/images/image_equivalence.h"
 #include "stats/images/image_moments.h"
 #include "stats/pyramids/image_pyramid.h"
