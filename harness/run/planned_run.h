@@ -42,16 +42,6 @@ struct SuiteRun {
 
 using SuiteRuns = std::vector<std::unique_ptr<SuiteRun>>;
 
-/// Leaves the planned tests of shard I of N, counted from 1; `elsewhere` names the others. Every
-/// shard draws the pilots of all selected tests and deals the tests in the same way, from the
-/// suites and the seed alone.
-///
-/// A test costs the expected observations of its streams, each by its rays and samples in the
-/// pilot. Tests of one stream share their observations: the longest prefix counts. The dearest test
-/// is dealt first (Graham 1969). It goes where it adds least, among the shards that stay near a
-/// fair part. If none does, it goes to the shard that has least to draw with it.
-void keep_shard(const SuiteRuns& runs, std::pair<unsigned, unsigned> shard);
-
 struct PlannedRun {
   SuiteRuns suites;
   Pools pools;  ///< For the selected tests; nothing is drawn.
