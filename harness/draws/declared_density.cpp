@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "estimators/core/mapped.h"
-#include "harness/draws/sound_draw.h"
 
 namespace assay::harness {
 namespace {

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <numeric>
 
-#include "harness/draws/consistency_setup.h"
 #include "harness/draws/sampler_setup.h"
 #include "harness/families/families.h"
 #include "harness/families/law.h"
@@ -40,7 +39,7 @@ Evidence integral(const Seen& seen) {
   return evidence;
 }
 
-/// theta = q - claimed. q is the probability of an inconsistent draw (consistency_setup.h), by
+/// theta = q - claimed. q is the probability of an inconsistent draw (sampler_setup.h), by
 /// exact binomial tests. One such draw disproves "q = 0".
 Evidence inconsistency(const Seen& seen) {
   const std::span<const std::uint64_t> counts = seen.data[0].cells;

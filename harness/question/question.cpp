@@ -7,7 +7,6 @@
 #include <limits>
 #include <tuple>
 
-#include "harness/draws/consistency_setup.h"
 #include "harness/draws/sampler_setup.h"
 #include "harness/sampling/pool.h"
 #include "harness/sampling/recorded_run.h"

@@ -9,7 +9,6 @@
 #include "estimators/core/flush_denormals.h"
 #include "estimators/core/quoting.h"
 #include "harness/base/numbers.h"
-#include "harness/draws/consistency_setup.h"
 #include "harness/draws/sampler_setup.h"
 #include "harness/plan/gate_text.h"
 #include "harness/plan/independence.h"

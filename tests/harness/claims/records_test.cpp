@@ -1,7 +1,7 @@
 // Claims of every kind: what is shared, and what their records say. Their verdicts are in
 // tests/tables/verdicts.txt, and levels in levels.txt.
 
-#include "harness/draws/consistency_setup.h"
+#include "harness/draws/sampler_setup.h"
 #include "harness/sampling/summary.h"
 #include "stats/variances/group_variance.h"
 #include "tests/harness/prelude.h"

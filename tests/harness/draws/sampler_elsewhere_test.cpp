@@ -1,7 +1,7 @@
 // Samplers that answer for a few at a time, as those in another process do, and not for every
 // point.
 
-#include "harness/draws/consistency_setup.h"
+#include "harness/draws/sampler_setup.h"
 #include "tests/prelude.h"
 
 namespace assay::harness {

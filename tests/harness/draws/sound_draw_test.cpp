@@ -1,6 +1,5 @@
-#include "harness/draws/sound_draw.h"
-
-#include "harness/draws/consistency_setup.h"
+#include "harness/draws/draw_cells.h"
+#include "harness/draws/sampler_setup.h"
 #include "tests/prelude.h"
 
 namespace assay::harness {
