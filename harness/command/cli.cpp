@@ -1,5 +1,3 @@
-#include "harness/command/cli.h"
-
 #include <fmt/format.h>
 #include <malloc.h>
 
@@ -11,8 +9,8 @@
 #include "estimators/catalogue.h"
 #include "harness/base/refuse.h"
 #include "harness/command/describe.h"
-#include "harness/command/environment.h"
 #include "harness/command/options.h"
+#include "harness/command/program.h"
 #include "harness/language/claim.h"
 #include "reports/report_formats.h"
 

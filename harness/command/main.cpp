@@ -2,7 +2,6 @@
 
 #include <cstdio>
 
-#include "harness/command/environment.h"
 #include "harness/command/program.h"
 
 int main(int argc, char** argv) {

@@ -12,7 +12,6 @@
 #include <set>
 
 #include "estimators/library_host.h"
-#include "harness/command/environment.h"
 #include "harness/command/program.h"
 #include "harness/ranks/ranks.h"
 

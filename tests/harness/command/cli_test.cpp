@@ -1,7 +1,6 @@
-#include "harness/command/cli.h"
-
 #include "estimators/stream.h"
 #include "harness/base/version.h"
+#include "harness/command/program.h"
 #include "tests/harness/prelude.h"
 
 namespace assay::harness {

@@ -1,5 +1,4 @@
-#include "harness/command/environment.h"
-
+#include "harness/command/program.h"
 #include "tests/harness/prelude.h"
 
 namespace assay::harness {

@@ -2,8 +2,8 @@
 
 #include <png.h>
 
-#include "harness/command/cli.h"
 #include "harness/command/commands.h"
+#include "harness/command/program.h"
 #include "harness/suite/suite.h"
 #include "tests/harness/pictures.h"
 #include "tests/harness/prelude.h"
