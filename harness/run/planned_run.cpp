@@ -13,7 +13,6 @@
 #include "estimators/core/waiting.h"
 #include "harness/base/interrupt.h"
 #include "harness/base/refuse.h"
-#include "harness/plan/forecast.h"
 #include "harness/plan/plan.h"
 #include "harness/run/picture_stream.h"
 #include "harness/theta/ask.h"

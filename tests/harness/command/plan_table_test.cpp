@@ -1,5 +1,5 @@
 #include "harness/command/commands.h"
-#include "harness/plan/forecast.h"
+#include "harness/plan/plan.h"
 #include "harness/run/looks.h"
 #include "reports/words/number.h"
 #include "reports/words/text.h"
