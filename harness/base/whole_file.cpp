@@ -48,6 +48,14 @@ void remove_left_overs(const fs::path& folder) {
   }
 }
 
+// True if the path still names the open file.
+bool is_current(const OpenFile& file, const fs::path& path) {
+  struct stat open {};
+  struct stat named {};
+  return ::fstat(file.descriptor(), &open) == 0 && ::stat(path.c_str(), &named) == 0 &&
+         open.st_dev == named.st_dev && open.st_ino == named.st_ino;
+}
+
 // A name that no other process takes.
 fs::path temporary_beside(const fs::path& target) {
   const fs::path folder = target.has_parent_path() ? target.parent_path() : fs::path(".");
@@ -62,7 +70,8 @@ class Temporary {
     do {
       ::unlink(file_.c_str());
       open_.emplace(file_, O_CREAT | O_EXCL | O_WRONLY, target_);
-    } while (!is_ours());
+      // Another process may take the new file for a left-over.
+    } while (!lock(open_->descriptor()) || !is_current(*open_, file_));
   }
   ~Temporary() {
     if (!is_renamed_) ::unlink(file_.c_str());
@@ -76,13 +85,6 @@ class Temporary {
   }
 
  private:
-  // False if another process took the new file for a left-over.
-  bool is_ours() const {
-    struct stat status {};
-    return lock(open_->descriptor()) && ::fstat(open_->descriptor(), &status) == 0 &&
-           status.st_nlink > 0;
-  }
-
   fs::path file_;
   fs::path target_;
   std::optional<OpenFile> open_;
@@ -118,13 +120,6 @@ void wait_for_lock(const OpenFile& file) {
     std::this_thread::sleep_for(pause);
     waited += pause;
   }
-}
-
-bool is_current(const OpenFile& file) {
-  struct stat open {};
-  struct stat named {};
-  return ::fstat(file.descriptor(), &open) == 0 && ::stat(file.path().c_str(), &named) == 0 &&
-         open.st_dev == named.st_dev && open.st_ino == named.st_ino;
 }
 
 }  // namespace
@@ -200,7 +195,7 @@ LockedFile::LockedFile(const std::string& path) {
   do {
     file_.emplace(path, O_RDWR | O_CREAT, path);
     wait_for_lock(*file_);
-  } while (!is_current(*file_));
+  } while (!is_current(*file_, path));
 }
 
 }  // namespace assay::harness

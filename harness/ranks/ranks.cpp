@@ -179,11 +179,7 @@ class Ranks::Window {
       : ranks_(ranks),
         round_(round),
         draw_(drawing_of(round.pools())),
-        usual_(round.pools().size()) {
-    for (const auto& pool : round.pools()) {
-      elsewhere_.push_back(pool->can_be_drawn_elsewhere() && ranks.names_.contains(pool->setup()));
-    }
-  }
+        usual_(round.pools().size()) {}
 
   bool empty() const { return slots_.empty(); }
   const Slot& at(std::uint64_t number) const { return slots_[number - front_]; }
@@ -307,7 +303,8 @@ class Ranks::Window {
   /// The next block that another rank can draw. Those before it are left to this one.
   std::optional<std::uint64_t> next_elsewhere() {
     while (const std::optional<std::uint64_t> number = next()) {
-      if (elsewhere_[at(*number).task.pool]) return number;
+      const Pool& drawn = pool(at(*number));
+      if (drawn.can_be_drawn_elsewhere() && ranks_.names_.contains(drawn.setup())) return number;
       own_.push_back(*number);
     }
     return std::nullopt;
@@ -333,7 +330,6 @@ class Ranks::Window {
   Ranks& ranks_;
   Round& round_;
   DrawBlock draw_;
-  std::vector<bool> elsewhere_;
   std::vector<Usual> usual_;
   std::deque<Slot> slots_;
   std::uint64_t front_ = 0;        ///< number of the first slot

@@ -207,22 +207,16 @@ void check_shards(const std::vector<ShardFile>& shards) {
 
 }  // namespace
 
-void add_shard(const SuiteRuns& runs, const RunOptions& options, reports::Record& record) {
+void add_shard(const SuiteRuns& runs, const RunOptions& options,
+               std::vector<std::vector<reports::FamilyResult>> places, reports::Record& record) {
   const auto [index, count] = *options.shard;
   reports::Shard shard{
       .index = index, .count = count, .options = options.command + options_text(options.selection)};
-  for (const auto& run : runs) {
-    reports::ShardSuite suite{
-        .digest = digest_of(*run), .tests = run->suite.tests.size(), .elsewhere = run->elsewhere};
-    for (const TestWork& work : run->tests) {
-      suite.results.push_back(place_in_family(work.outcome, run->suite));
-    }
-    for (const Untested& each : run->untested) {
-      suite.results.push_back({.position = position_of(*each.test, run->suite)});
-    }
-    // The record has its tests in this order.
-    std::ranges::sort(suite.results, {}, &reports::FamilyResult::position);
-    shard.suites.push_back(std::move(suite));
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    shard.suites.push_back({.digest = digest_of(*runs[i]),
+                            .tests = runs[i]->suite.tests.size(),
+                            .results = std::move(places[i]),
+                            .elsewhere = runs[i]->elsewhere});
   }
   record.shard = std::move(shard);
   record.note = fmt::format(

@@ -11,8 +11,9 @@
 namespace assay::harness {
 
 /// Fills in `record.shard`, which `merge` needs, and adds a note on the basis of a shard's
-/// verdicts.
-void add_shard(const SuiteRuns& runs, const RunOptions& options, reports::Record& record);
+/// verdicts. `places` are those of each suite's tests in the record.
+void add_shard(const SuiteRuns& runs, const RunOptions& options,
+               std::vector<std::vector<reports::FamilyResult>> places, reports::Record& record);
 
 struct ShardFile {
   std::string file;

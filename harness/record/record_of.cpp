@@ -129,12 +129,12 @@ std::vector<reports::Sample> samples_of(const TestWork& work) {
   std::vector<reports::Sample> samples;
   const TestOutcome& outcome = work.outcome;
   const std::vector<Subject>& subjects = outcome.question.subjects;
-  const std::vector<Sample> all = work.samples();
   // All channels, even if they make one number. An image is one row.
   const std::size_t rows = has_image(outcome.question) ? 1 : subjects[0].channels.size();
   for (std::size_t row = 0; row < rows; ++row) {
-    for (std::size_t subject = 0; subject < all.size(); ++subject) {
-      const Drawn* const drawn = std::get_if<Drawn>(&all[subject]);
+    for (std::size_t subject = 0; subject < subjects.size(); ++subject) {
+      const Sample sample = work.sample(subject);
+      const Drawn* const drawn = std::get_if<Drawn>(&sample);
       const Subject& side = subjects[subject];
       if (drawn == nullptr || row >= side.channels.size()) continue;
       if (side.image) {
@@ -519,7 +519,9 @@ reports::Record record_of(const SuiteRuns& runs, const RunOptions& options) {
   reports::Record record{.tool = this_tool(), .environment = this_environment(options.threads)};
   record.seed = runs.empty() ? options.seed.value_or(1) : runs.front()->seed;
   bool whole = true;
-  for (const auto& run : runs) {
+  std::vector<std::vector<reports::FamilyResult>> places(runs.size());
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    const auto& run = runs[i];
     reports::Suite suite{.name = run->suite.name,
                          .file = run->suite.file,
                          .about = run->suite.about,
@@ -529,6 +531,7 @@ reports::Record record_of(const SuiteRuns& runs, const RunOptions& options) {
     for (FamilyMember& each : members_of(*run)) {
       add_replay(run->suite.tests[each.place.position], *run, runs, options, each.test);
       suite.tests.push_back(std::move(each.test));
+      places[i].push_back(std::move(each.place));
     }
     suite.statements = statements_of(run->suite, suite.tests);
     // The clock affects their numbers.
@@ -549,7 +552,7 @@ reports::Record record_of(const SuiteRuns& runs, const RunOptions& options) {
     record.suites.push_back(std::move(suite));
   }
   if (!whole) record.note = partial_note;
-  if (options.shard) add_shard(runs, options, record);
+  if (options.shard) add_shard(runs, options, std::move(places), record);
   note_retries(record);
   return record;
 }

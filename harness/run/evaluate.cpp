@@ -113,17 +113,6 @@ bool estimates_differ(const Subject& subject, const Pool& pool, std::uint64_t ob
   return false;
 }
 
-/// Says which source of a test stopped, where and why; "" if none did.
-std::string where_it_stopped(const TestWork& work) {
-  const std::vector<Sample> samples = work.samples();
-  for (std::size_t subject = 0; subject < samples.size(); ++subject) {
-    if (const Fault* fault = std::get_if<Fault>(&samples[subject])) {
-      return sentence_of(*fault, work.outcome.question.subjects[subject]);
-    }
-  }
-  return "";
-}
-
 /// Why a test's observations cannot be judged: not finite, or outside their declared range; "" if
 /// they can.
 std::string unusable(const DrawnTest& test) {
@@ -477,8 +466,12 @@ void take_sound_look(TestWork& work, const DrawnTest& test, bool may_go_on) {
 /// The reason why the look cannot be taken; nullopt if it was.
 std::optional<std::string> take_drawn_look(TestWork& work, bool may_go_on) {
   if (!work.outcome.plan.error.empty()) return work.outcome.plan.error;
+  for (std::size_t subject = 0; subject < work.pools.size(); ++subject) {
+    const Sample sample = work.sample(subject);
+    const Fault* const fault = std::get_if<Fault>(&sample);
+    if (fault != nullptr) return sentence_of(*fault, work.outcome.question.subjects[subject]);
+  }
   const std::optional<DrawnTest> test = drawn(work);
-  if (!test) return where_it_stopped(work);
   if (std::string why = unusable(*test); !why.empty()) return why;
   if (!work.outcome.plan.pilot_error.empty()) return work.outcome.plan.pilot_error;
   take_sound_look(work, *test, may_go_on);
@@ -510,13 +503,10 @@ Sample TestWork::sample(std::size_t subject) const {
   return pools[subject]->sample(outcome.secondaries(subject));
 }
 
-std::vector<Sample> TestWork::samples() const {
-  return mapped_indices(pools.size(), [&](std::size_t i) { return sample(i); });
-}
-
 std::optional<DrawnTest> drawn(const TestWork& work) {
   DrawnTest test{.outcome = work.outcome};
-  for (const Sample& sample : work.samples()) {
+  for (std::size_t subject = 0; subject < work.pools.size(); ++subject) {
+    const Sample sample = work.sample(subject);
     const Drawn* const drawn = std::get_if<Drawn>(&sample);
     if (drawn == nullptr) return std::nullopt;
     test.samples.push_back(*drawn);

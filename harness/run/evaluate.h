@@ -23,7 +23,6 @@ struct TestWork {
 
   /// A subject's sample at the current look, once it is drawn.
   Sample sample(std::size_t subject) const;
-  std::vector<Sample> samples() const;
 };
 
 /// A test at its current look, without faults.
