@@ -4,20 +4,34 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <boost/algorithm/string/replace.hpp>
+#include <chrono>
 #include <filesystem>
 #include <fstream>
 #include <map>
 #include <set>
 
 #include "estimators/catalogue.h"
+#include "estimators/core/flush_denormals.h"
+#include "estimators/core/waiting.h"
 #include "harness/base/interrupt.h"
+#include "harness/base/parallel.h"
 #include "harness/base/record_file.h"
 #include "harness/base/terminal.h"
 #include "harness/command/describe.h"
+#include "harness/draws/sampler_setup.h"
+#include "harness/ledger/ledger.h"
+#include "harness/plan/plan.h"
+#include "harness/question/question.h"
 #include "harness/ranks/ranks.h"
 #include "harness/record/record_of.h"
+#include "harness/run/evaluate.h"
+#include "harness/run/looks.h"
 #include "harness/run/planned_run.h"
 #include "harness/sampling/checkpoint.h"
+#include "harness/sampling/pool.h"
+#include "harness/sampling/prepare.h"
+#include "harness/sampling/recorded_run.h"
 #include "reports/report_formats.h"
 #include "reports/words/display.h"
 
@@ -41,6 +55,179 @@ std::string digest_of(const std::string& file) {
   std::error_code ignored;
   return fmt::format("{:x} of {} bytes", text_hash(text),
                      std::filesystem::file_size(file, ignored));
+}
+
+// ---- Runs
+
+/// Tells of the first doubtful margin. A single test tells it with its verdict.
+void note_margins(const PlannedRun& planned) {
+  std::vector<std::string> doubts;
+  std::size_t tests = 0;
+  for (const auto& run : planned.suites) {
+    tests += run->tests.size();
+    for (const TestWork& work : run->tests) {
+      const std::string doubt = doubtful_margin(work.outcome.question, run->pilots);
+      if (doubt.empty()) continue;
+      doubts.push_back(fmt::format("`{}`: {}", work.outcome.question.test->id, doubt));
+    }
+  }
+  if (doubts.empty() || tests == 1) return;
+  const std::size_t others = doubts.size() - 1;
+  notice(doubts[0] + (others > 0 ? fmt::format(" ({} other doubtful `detect`)", others) : ""));
+}
+
+/// Adds remarks on the ledger.
+void note_ledger(reports::Record& record, const SuiteRuns& runs, const RunOptions& options) {
+  std::size_t outside = 0;
+  for (const auto& run : runs) {
+    for (const TestWork& work : run->tests) outside += work.outcome.place.inside ? 0 : 1;
+  }
+  if (outside > 0) {
+    add_note(record, fmt::format("{} test{} outside the ledger: mutants and expected failures",
+                                 outside, outside == 1 ? " is" : "s are"));
+  }
+  if (!options.seed) {
+    add_note(record,
+             "no --seed was given: nights with the suite's own seed are all the same and count "
+             "once; run nights with --seed random");
+  }
+}
+
+/// Tells of broken claims, and whether to draw on.
+class Listener {
+ public:
+  Listener(const PlannedRun& planned, const RunOptions& options, const Broken& broken)
+      : planned_(planned), options_(options), broken_(broken) {}
+
+  bool hear(const TestWork& work) {
+    for (const auto& run : planned_.suites) {
+      const bool its =
+          std::ranges::any_of(run->tests, [&](const TestWork& x) { return &x == &work; });
+      if (!its || !is_broken(work)) continue;
+      tell(*run, record_of_test(work, run->suite.file), *work.outcome.question.test);
+    }
+    return may_go_on();
+  }
+  bool hear_untested() {
+    for (const auto& run : planned_.suites) {
+      for (const Untested& each : run->untested) {
+        const reports::Test test = record_of_untested(each, *run);
+        if (reports::is_failed(reports::standing(test))) tell(*run, test, *each.test);
+      }
+    }
+    return may_go_on();
+  }
+  bool may_go_on() const { return !options_.fail_fast || first_.empty(); }
+  const std::string& first() const { return first_; }  ///< Id of the first broken claim, or "".
+
+ private:
+  void tell(const SuiteRun& run, reports::Test test, const TestEntry& entry) {
+    if (first_.empty()) first_ = test.id;
+    add_replay(entry, run, planned_.suites, options_, test);
+    if (broken_) broken_(test);
+  }
+
+  const PlannedRun& planned_;
+  const RunOptions& options_;
+  const Broken& broken_;
+  std::string first_ = "";
+};
+
+/// Leaves out the tests that were not decided.
+void leave_out(SuiteRun& run, const std::string& why) {
+  for (const TestWork& work : run.tests) {
+    if (work.outcome.decided) continue;
+    run.untested.push_back({work.outcome.question.test, reports::Verdict::skipped, why});
+  }
+  std::ranges::sort(run.untested, {}, &Untested::test);
+  std::erase_if(run.tests, [](const TestWork& work) { return !work.outcome.decided; });
+}
+
+reports::Record run_in_arena(const std::vector<Suite>& suites, const RunOptions& options,
+                             Progress& progress, const Broken& broken, std::string* ledger_fault) {
+  const auto start = std::chrono::steady_clock::now();
+  const std::string started = utc_now();
+  if (!options.ledger.empty()) require_ledger(options.ledger);
+  if (!options.ledger.empty() && options.shard) {
+    refuse({}, "--ledger needs whole runs: leave out --shard and the environment's shards");
+  }
+  if (options.fail_fast && (!options.ledger.empty() || options.shard)) {
+    refuse({}, "--fail-fast ends a run early: leave --ledger and --shard out");
+  }
+  const PlannedRun planned = plan_run(suites, options, progress);
+  stop_if_interrupted();
+  note_margins(planned);
+  std::vector<TestWork*> tests;
+  for (auto& run : planned.suites) {
+    run->pilots.drop_drawn();
+    for (TestWork& work : run->tests) tests.push_back(&work);
+  }
+  Listener listener(planned, options, broken);
+  if (listener.hear_untested()) {
+    sample_in_looks(tests, planned.pools.all(),
+                    {.executor = executor_of(options),
+                     .cheapest_first = options.fail_fast,
+                     .decided = [&](const TestWork& work) { return listener.hear(work); }},
+                    progress);
+  }
+  const bool none =
+      std::ranges::none_of(tests, [](const TestWork* x) { return x->outcome.decided; });
+  if (none || !options.ledger.empty() || options.shard) stop_if_interrupted();
+  for (auto& run : planned.suites) {
+    // A family without some of its tests has no adjusted p-values.
+    const bool all = run->tests.size() + run->untested.size() == run->suite.tests.size();
+    run->adjusted =
+        all && !options.shard &&
+        std::ranges::all_of(run->tests, [](const TestWork& work) { return work.outcome.decided; });
+    if (interrupted())
+      leave_out(*run, "the run was interrupted before its verdict");
+    else if (!listener.may_go_on())
+      leave_out(*run, fmt::format("the run ended early: `{}` is broken", listener.first()));
+  }
+  const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
+  reports::Record record = record_of(planned.suites, options);
+  record.started = started;
+  record.seconds = elapsed.count();
+  if (options.ledger.empty()) return record;
+  try {
+    record.ledger = add_to_ledger({options.ledger, started, record.tool.commit}, planned.suites);
+    note_ledger(record, planned.suites, options);
+  } catch (const std::runtime_error& error) {
+    if (ledger_fault == nullptr) throw;
+    *ledger_fault = error.what();
+    add_note(record, fmt::format("the ledger got no evidence: {}", error.what()));
+  }
+  return record;
+}
+
+// ---- Samples
+
+constexpr std::uint64_t usual = 10;
+
+/// A name as the plugin `recorded` reads it.
+std::string in_header(const std::string& name) {
+  if (name.find_first_of(" \t,;#\"") == std::string::npos) return name;
+  return fmt::format("\"{}\"", boost::replace_all_copy(name, "\"", "\"\""));
+}
+
+/// A source's channels: all of an estimator, or a part of it. The cells of a sampler's draws are
+/// computed here.
+Subject sampled_by(Source source, const Estimators& estimators, std::uint64_t seed) {
+  const std::string cell = "." + cell_channel;
+  if (!source.part.ends_with(cell)) {
+    Subject sampled = values(source, estimators);
+    if (source.part.empty()) sampled.channels = {0, 1, sampled.setup->channel_count()};
+    return sampled;
+  }
+  source.part.resize(source.part.size() - cell.size());
+  Subject sampled = draws(source, estimators, Draws::cells);
+  seed_cells(sampled, source.where, seed);
+  try {
+    dynamic_cast<const SamplerSetup&>(*sampled.setup).density_cells();
+  } catch (const std::domain_error& error) {
+    refuse(source.where, error.what());
+  }
+  return sampled;
 }
 
 }  // namespace
@@ -179,6 +366,61 @@ Identity identity_of(const std::vector<Suite>& suites, const RunOptions& options
     identity.emplace_back(fmt::format("the content of `{}`", file), digest_of(file));
   }
   return identity;
+}
+
+reports::Record run(const std::vector<Suite>& suites, const RunOptions& options, Progress& progress,
+                    const Broken& broken, std::string* ledger_fault) {
+  reports::Record record;
+  with_threads(options.threads,
+               [&] { record = run_in_arena(suites, options, progress, broken, ledger_fault); });
+  return record;
+}
+
+int sample(const SampleArguments& arguments) {
+  const Source source = parse_source(arguments.source, {arguments.source, 0, 0});
+  const std::vector<EstimatorEntry> entries = estimators_of(
+      {source}, arguments.estimators, arguments.primaries, "assay sample " + arguments.source);
+  const Estimators estimators{{source.estimator, prepare(entries.front(), ".")}};
+  const Subject sampled = sampled_by(source, estimators, arguments.seed);
+  const PreparedEstimator& estimator = *sampled.estimator;
+  const auto rows = sampled.setup->observations();
+  if (sampled.setup->is_reference()) {
+    refuse(source.where, "`{}` is a reference, a mean without observations", source.estimator);
+  }
+  if (as_recorded_run(*sampled.setup) != nullptr) {
+    refuse({}, "`{}` has the moments of a run, not its observations", source.estimator);
+  }
+  if (rows && arguments.secondaries.value_or(0) > *rows) {
+    refuse({}, "--secondaries {}: `{}` has {} rows", *arguments.secondaries, source.estimator,
+           *rows);
+  }
+  const std::uint64_t count = arguments.secondaries.value_or(std::min(usual, rows.value_or(usual)));
+  const StreamKey key = key_of(estimator, arguments.seed, 0, sampled.purpose);
+
+  std::vector<std::string> names;
+  for (const Channel& column : sampled.declared()) names.push_back(in_header(column.name));
+  fmt::print("# {} {} of {} primaries, seed {}\n", estimator.entry->information.name,
+             estimator.parameters, arguments.primaries, arguments.seed);
+  fmt::print("# stream: {:016x}\n# columns: {}\n", key.bits, fmt::join(names, " "));
+  if (const auto* draws = dynamic_cast<const SamplerSetup*>(sampled.setup.get())) {
+    fmt::print("# a draw without a point: {}\n",
+               fmt::join(mapped(draws->marginals(), no_point), " "));
+  }
+  const std::unique_ptr<Estimator> worker = sampled.setup->make();
+  const FlushDenormals flush;
+  std::vector<double> out(sampled.setup->channel_count());
+  worker->announce({.key = key, .first = 0, .last = count});
+  for (std::uint64_t row = 0; row < count && !interrupted(); ++row) {
+    Stream random(key, row);
+    Cost unused;
+    worker->secondary(random, arguments.primaries, out, unused);
+    std::string line;
+    for (const std::size_t column : sampled.channels.all()) {
+      line += fmt::format("{}{}", line.empty() ? "" : " ", out[column]);
+    }
+    fmt::print("{}\n", line);
+  }
+  return 0;
 }
 
 }  // namespace assay::harness
