@@ -6,7 +6,7 @@
 
 #include "harness/base/parallel.h"
 #include "harness/families/families.h"
-#include "harness/image/image_pair.h"
+#include "harness/image/image_evidence.h"
 #include "harness/plan/sizes.h"
 #include "harness/question/question.h"
 #include "harness/run/image_judge.h"

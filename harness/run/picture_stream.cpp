@@ -16,7 +16,7 @@
 #include "harness/base/interrupt.h"
 #include "harness/base/large_vector.h"
 #include "harness/base/parallel.h"
-#include "harness/image/image_pair.h"
+#include "harness/image/image_evidence.h"
 #include "harness/plan/sizes.h"
 #include "harness/run/evaluate.h"
 #include "stats/images/image_equivalence.h"

@@ -1,7 +1,6 @@
 // Pixels of images that never varied, and those of which one half of the images saw nothing.
 
-#include "harness/image/image_pair.h"
-
+#include "harness/image/image_evidence.h"
 #include "harness/question/question.h"
 #include "tests/harness/questions.h"
 #include "tests/stats/calibration.h"
