@@ -5,22 +5,20 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <variant>
 #include <vector>
 
 #include "harness/base/identity.h"
 #include "harness/base/progress.h"
 #include "harness/calibration/calibrate.h"
-#include "harness/command/init.h"
-#include "harness/record/merge.h"
 #include "harness/record/output.h"
+#include "harness/record/record_of.h"
 #include "harness/suite/run_options.h"
 #include "harness/suite/suite.h"
 #include "reports/record/record.h"
 
 namespace assay::harness {
-
-struct PlannedRun;
 
 /// Hears of a broken claim when it is decided.
 using Broken = std::function<void(const reports::Test&)>;
@@ -87,6 +85,32 @@ int describe(const std::string& name);
 /// All that decides the numbers of a run: version, machine code, seed, options, and the files that
 /// suites name. Of a file it takes the size and the first mebibyte.
 Identity identity_of(const std::vector<Suite>& suites, const RunOptions& options);
+
+/// A text that the program carries: a template of `assay init`, a script of `assay completion`, or
+/// what suites/README.md says of claims.
+struct CarriedFile {
+  std::string_view path;  ///< below harness/command, as "init/suite/mine.yaml"; or "claims.md"
+  std::string_view text;
+};
+
+/// In the order of their paths.
+const std::vector<CarriedFile>& carried_files();
+
+struct InitArguments {
+  std::vector<std::string> words;  ///< KIND [FOLDER]; a kind has one word or two
+  std::string kind;                ///< a folder of command/init
+  std::string folder = ".";
+};
+
+/// Every kind as a user writes it: "process python".
+std::vector<std::string> kinds_of_example();
+
+/// Takes kind and folder from the words. InputError for an unknown kind and a word too many.
+void read_kind(InitArguments& arguments);
+
+/// Writes the example of that kind and prints what to do with it. InputError, and nothing written,
+/// if one of its files is there already.
+int write_example(const InitArguments& arguments);
 
 // ---- What a command line asks for
 

@@ -1,5 +1,3 @@
-#include "harness/command/init.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -10,6 +8,7 @@
 #include "estimators/core/value.h"
 #include "harness/base/text_file.h"
 #include "harness/base/whole_file.h"
+#include "harness/command/commands.h"
 #include "harness/suite/yaml.h"
 
 namespace assay::harness {

@@ -7,7 +7,6 @@
 
 #include "harness/command/commands.h"
 #include "harness/command/describe.h"
-#include "harness/plan/gate_text.h"
 #include "harness/plan/plan.h"
 #include "harness/run/planned_run.h"
 #include "harness/theta/theta.h"

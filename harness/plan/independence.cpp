@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "estimators/ready_made.h"
-#include "harness/plan/gate_text.h"
 #include "harness/theta/ask.h"
 #include "harness/theta/gate.h"
 #include "harness/theta/theta.h"

@@ -8,7 +8,6 @@
 #include <limits>
 #include <stdexcept>
 
-#include "harness/plan/gate_text.h"
 #include "harness/plan/independence.h"
 #include "harness/plan/sizes.h"
 #include "harness/question/question.h"

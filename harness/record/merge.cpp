@@ -1,5 +1,3 @@
-#include "harness/record/merge.h"
-
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -14,6 +12,7 @@
 #include "harness/base/record_file.h"
 #include "harness/base/terminal.h"
 #include "harness/base/text_file.h"
+#include "harness/record/record_of.h"
 
 namespace assay::harness {
 namespace {

@@ -19,7 +19,6 @@
 #include "harness/plan/independence.h"
 #include "harness/question/question.h"
 #include "harness/record/maps.h"
-#include "harness/record/merge.h"
 #include "harness/run/pools.h"
 #include "harness/sampling/summary.h"
 #include "harness/theta/ask.h"

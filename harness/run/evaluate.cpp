@@ -10,7 +10,6 @@
 #include "estimators/core/quoting.h"
 #include "harness/base/numbers.h"
 #include "harness/draws/sampler_setup.h"
-#include "harness/plan/gate_text.h"
 #include "harness/plan/independence.h"
 #include "harness/plan/plan.h"
 #include "harness/plan/sizes.h"

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "harness/plan/gate_text.h"
 #include "harness/run/evaluate.h"
 #include "harness/run/image_judge.h"
 #include "harness/theta/ask.h"

@@ -1,5 +1,4 @@
-#include "harness/record/merge.h"
-
+#include "harness/record/record_of.h"
 #include "harness/suite/run_options.h"
 #include "reports/report_formats.h"
 #include "tests/harness/prelude.h"

@@ -1,6 +1,6 @@
 // `needs:` of a suite: without a program its tests are skipped, and nothing of it is prepared.
 
-#include "harness/record/merge.h"
+#include "harness/record/record_of.h"
 #include "harness/suite/run_options.h"
 #include "reports/report_formats.h"
 #include "tests/harness/prelude.h"

@@ -1,4 +1,4 @@
-#include "harness/plan/gate_text.h"
+#include "harness/plan/outcome.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
