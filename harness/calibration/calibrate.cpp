@@ -21,7 +21,6 @@
 #include "harness/plan/sizes.h"
 #include "harness/record/record_of.h"
 #include "harness/run/looks.h"
-#include "harness/run/pools.h"
 #include "harness/sampling/prepare.h"
 #include "harness/suite/suite.h"
 #include "harness/theta/ask.h"

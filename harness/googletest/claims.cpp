@@ -20,7 +20,6 @@
 #include "harness/record/record_of.h"
 #include "harness/run/evaluate.h"
 #include "harness/run/looks.h"
-#include "harness/run/pools.h"
 #include "harness/sampling/prepare.h"
 #include "harness/suite/yaml.h"
 #include "harness/theta/ask.h"

@@ -131,7 +131,7 @@ class Servant {
         std::ranges::find(prepared_.setups, named.setup, &NamedSetups::value_type::first);
     Unpacker::require(setup != prepared_.setups.end() && named.pool < most_pools,
                       "a recipe for no set-up");
-    // Estimators count in cells that are there when they are made (run/pools.cpp).
+    // Estimators count in cells that are there when they are made (run/looks.cpp).
     const auto* const draws = dynamic_cast<const SamplerSetup*>(setup->second.get());
     const bool counts =
         std::ranges::any_of(named.recipe.plan, [](const auto& each) { return each.cells > 0; });

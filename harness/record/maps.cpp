@@ -1,5 +1,3 @@
-#include "harness/record/maps.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -16,6 +14,7 @@
 #include "harness/draws/sampler_setup.h"
 #include "harness/families/law.h"
 #include "harness/question/question.h"
+#include "harness/record/record_of.h"
 #include "harness/run/image_judge.h"
 #include "stats/cells/chi_square_fit.h"
 #include "stats/images/image_moments.h"

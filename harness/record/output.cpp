@@ -10,7 +10,7 @@
 #include "estimators/core/quoting.h"
 #include "estimators/parameters.h"
 #include "harness/base/whole_file.h"
-#include "harness/record/maps.h"
+#include "harness/record/record_of.h"
 #include "harness/sampling/pool.h"
 #include "harness/suite/suite.h"
 #include "reports/words/display.h"

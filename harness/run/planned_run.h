@@ -12,7 +12,7 @@
 #include "estimators/rendered.h"
 #include "harness/pilot/pilot.h"
 #include "harness/run/evaluate.h"
-#include "harness/run/pools.h"
+#include "harness/run/looks.h"
 #include "harness/sampling/executor.h"
 #include "harness/suite/run_options.h"
 

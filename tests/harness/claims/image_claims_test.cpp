@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include "harness/command/commands.h"
-#include "harness/record/maps.h"
+#include "harness/record/record_of.h"
 #include "reports/report_formats.h"
 #include "tests/estimators/exr.h"
 #include "tests/harness/prelude.h"

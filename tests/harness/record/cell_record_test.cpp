@@ -1,4 +1,4 @@
-#include "harness/record/maps.h"
+#include "harness/record/record_of.h"
 #include "tests/harness/prelude.h"
 #include "tests/harness/questions.h"
 
