@@ -1,16 +1,27 @@
 #include "harness/base/text_file.h"
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <chrono>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
+#include <stdexcept>
+#include <system_error>
+#include <thread>
+#include <utility>
 
+#include "harness/base/interrupt.h"
 #include "harness/base/refuse.h"
+#include "harness/base/terminal.h"
 #include "reports/words/text.h"
 
 namespace assay::harness {
@@ -21,6 +32,110 @@ constexpr std::size_t largest_file = std::size_t{16} << 20;
 constexpr std::size_t shown_bytes = 72;
 
 bool continues(char c) { return (static_cast<unsigned char>(c) & 0xC0U) == 0x80; }
+
+// ---- Files that are written
+
+namespace fs = std::filesystem;
+
+[[noreturn]] void fail(const char* action, const fs::path& path, int error) {
+  throw std::runtime_error(fmt::format("cannot {} {}: {}", action, path.string(),
+                                       std::generic_category().message(error)));
+}
+
+constexpr std::string_view temporary_begin = ".assay-";
+constexpr std::string_view temporary_end = ".tmp";
+
+// False if another process holds the lock. Where there are no locks, nobody does.
+bool lock(int descriptor) {
+  return ::flock(descriptor, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK;
+}
+
+// A temporary file is locked while its process lives. Those of killed processes are removed.
+void remove_left_overs(const fs::path& folder) {
+  std::error_code ignored;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder, ignored)) {
+    const std::string name = entry.path().filename();
+    if (!name.starts_with(temporary_begin) || !name.ends_with(temporary_end)) continue;
+    const int descriptor = ::open(entry.path().c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK);
+    if (descriptor < 0) continue;
+    if (::flock(descriptor, LOCK_EX | LOCK_NB) == 0) ::unlink(entry.path().c_str());
+    ::close(descriptor);
+  }
+}
+
+// True if the path still names the open file.
+bool is_current(const OpenFile& file, const fs::path& path) {
+  struct stat open {};
+  struct stat named {};
+  return ::fstat(file.descriptor(), &open) == 0 && ::stat(path.c_str(), &named) == 0 &&
+         open.st_dev == named.st_dev && open.st_ino == named.st_ino;
+}
+
+// A name that no other process takes.
+fs::path temporary_beside(const fs::path& target) {
+  const fs::path folder = target.has_parent_path() ? target.parent_path() : fs::path(".");
+  remove_left_overs(folder);
+  return folder / fmt::format("{}{}{}", temporary_begin, ::getpid(), temporary_end);
+}
+
+// A new file beside the target, locked, and removed unless it takes the target's place.
+class Temporary {
+ public:
+  explicit Temporary(const fs::path& target) : file_(temporary_beside(target)), target_(target) {
+    do {
+      ::unlink(file_.c_str());
+      open_.emplace(file_, O_CREAT | O_EXCL | O_WRONLY, target_);
+      // Another process may take the new file for a left-over.
+    } while (!lock(open_->descriptor()) || !is_current(*open_, file_));
+  }
+  ~Temporary() {
+    if (!is_renamed_) ::unlink(file_.c_str());
+  }
+
+  void become_target(std::string_view text) {
+    open_->write(text);
+    open_->flush();
+    if (::rename(file_.c_str(), target_.c_str()) != 0) fail("write", target_, errno);
+    is_renamed_ = true;
+  }
+
+ private:
+  fs::path file_;
+  fs::path target_;
+  std::optional<OpenFile> open_;
+  bool is_renamed_ = false;
+};
+
+fs::path behind_links(const fs::path& path) {
+  std::error_code ignored;
+  if (!fs::is_symlink(fs::symlink_status(path, ignored))) return path;
+  const fs::path target = fs::weakly_canonical(path, ignored);
+  return ignored ? path : target;
+}
+
+// ---- Locks
+
+constexpr std::chrono::milliseconds longest_pause(50);
+constexpr std::chrono::milliseconds told_after(3000);
+
+void wait_for_lock(const OpenFile& file) {
+  const std::string path = file.path().string();
+  std::chrono::milliseconds waited(0);
+  bool told = false;
+  while (::flock(file.descriptor(), LOCK_EX | LOCK_NB) != 0) {
+    if (errno == EINTR) continue;
+    if (errno != EWOULDBLOCK) fail("lock", path, errno);
+    if (interrupted()) {
+      throw std::runtime_error(fmt::format("cannot lock {}: the wait was interrupted", path));
+    }
+    if (waited > told_after && !std::exchange(told, true)) {
+      say_beside_progress(fmt::format("waiting for another run that writes {}", path));
+    }
+    const auto pause = std::clamp(waited, std::chrono::milliseconds(1), longest_pause);
+    std::this_thread::sleep_for(pause);
+    waited += pause;
+  }
+}
 
 }  // namespace
 
@@ -100,6 +215,80 @@ std::string caret_below(std::string_view line, int column) {
     if (!continues(c)) out += c == '\t' ? '\t' : ' ';
   }
   return out + "^\n";
+}
+
+void write_whole(const fs::path& path, std::string_view text) {
+  const fs::path target = behind_links(path);
+  std::error_code ignored;
+  const fs::file_status status = fs::status(target, ignored);
+  if (fs::is_directory(status)) fail("write", path, EISDIR);
+  if (fs::exists(status) && !fs::is_regular_file(status)) {
+    return OpenFile(target, O_WRONLY, path).write(text);
+  }
+  Temporary(target).become_target(text);
+}
+
+OpenFile::OpenFile(const fs::path& file, int flags, fs::path named)
+    : path_(std::move(named)), descriptor_(::open(file.c_str(), flags | O_CLOEXEC, 0666)) {
+  if (descriptor_ < 0) fail("write", path_, errno);
+}
+
+OpenFile::~OpenFile() { ::close(descriptor_); }
+
+void OpenFile::write(std::string_view bytes) const {
+  while (!bytes.empty()) {
+    const ssize_t written = ::write(descriptor_, bytes.data(), bytes.size());
+    if (written < 0 && errno == EINTR) continue;
+    if (written < 0) fail("write", path_, errno);
+    bytes.remove_prefix(static_cast<std::size_t>(written));
+  }
+}
+
+void OpenFile::flush() const {
+  if (::fsync(descriptor_) != 0) fail("write", path_, errno);
+}
+
+GrowingFile::GrowingFile(const fs::path& path) : file_(path, O_RDWR | O_CREAT, path) {
+  if (!lock(file_.descriptor())) {
+    throw std::runtime_error(fmt::format("another run is writing to {}", path.string()));
+  }
+  size_ = fs::file_size(path);
+}
+
+void GrowingFile::cut(std::uint64_t size) {
+  if (::ftruncate(file_.descriptor(), static_cast<off_t>(size)) != 0) fail("write", path(), errno);
+  size_ = size;
+}
+
+void GrowingFile::append(std::string_view bytes) {
+  // An earlier call may have failed half-way.
+  if (::lseek(file_.descriptor(), static_cast<off_t>(size_), SEEK_SET) < 0) {
+    fail("write", path(), errno);
+  }
+  file_.write(bytes);
+  size_ += bytes.size();
+}
+
+std::string GrowingFile::read(std::uint64_t first, std::uint64_t size) const {
+  std::string bytes(size, '\0');
+  std::uint64_t there = 0;
+  while (there < size) {
+    const ssize_t got = ::pread(file_.descriptor(), bytes.data() + there, size - there,
+                                static_cast<off_t>(first + there));
+    if (got < 0 && errno == EINTR) continue;
+    if (got < 0) fail("read", path(), errno);
+    if (got == 0) break;
+    there += static_cast<std::uint64_t>(got);
+  }
+  bytes.resize(there);
+  return bytes;
+}
+
+LockedFile::LockedFile(const std::string& path) {
+  do {
+    file_.emplace(path, O_RDWR | O_CREAT, path);
+    wait_for_lock(*file_);
+  } while (!is_current(*file_, path));
 }
 
 }  // namespace assay::harness

@@ -7,7 +7,6 @@
 #include "estimators/core/quoting.h"
 #include "estimators/core/value.h"
 #include "harness/base/text_file.h"
-#include "harness/base/whole_file.h"
 #include "harness/command/commands.h"
 #include "harness/suite/yaml.h"
 

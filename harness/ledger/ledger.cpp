@@ -8,7 +8,6 @@
 
 #include "harness/base/identity.h"
 #include "harness/base/text_file.h"
-#include "harness/base/whole_file.h"
 #include "harness/theta/theta.h"
 #include "stats/tails/tails.h"
 

@@ -91,7 +91,7 @@ std::shared_ptr<Pool> pilot_pool(const std::shared_ptr<const Setup>& setup, Stre
 std::uint64_t averaged_primaries_of(const PreparedEstimator& estimator) {
   const Setup& setup = *estimator.setup;
   if (!estimator.nature().averages || estimator.original || setup.observations() || setup.image() ||
-      as_recorded_run(setup) != nullptr || setup.channel_count() > most_kept_channels) {
+      setup.channel_count() > most_kept_channels) {
     return 1;
   }
   return std::min(averaged_primaries, estimator.primaries.value_or(averaged_primaries));
@@ -100,11 +100,11 @@ std::uint64_t averaged_primaries_of(const PreparedEstimator& estimator) {
 /// A pilot's sums, converted to single primaries if a recorded run has means of several.
 std::shared_ptr<const Summary> sums_of(const Drawn& drawn) {
   const RecordedRun* run = as_recorded_run(*drawn.pool().setup());
-  if (run == nullptr || !run->averages()) return drawn.shared_summary();
+  if (run == nullptr || !run->averages) return drawn.shared_summary();
   auto sums = std::make_shared<Summary>(drawn.summary());
   for (ChannelSummary& channel : sums->channels) {
     channel.moments =
-        stats::moments_of_values(channel.moments, static_cast<double>(run->primaries()));
+        stats::moments_of_values(channel.moments, static_cast<double>(run->primaries));
   }
   return sums;
 }
@@ -182,7 +182,7 @@ std::uint64_t primaries_of_pilots(const Question& question, const Pilots& pilots
   std::map<const Pilot*, std::uint64_t> paid;
   for (const Subject& side : question.subjects) {
     const Setup& setup = *side.setup;
-    if (setup.observations() || as_recorded_run(setup) != nullptr) continue;
+    if (setup.observations()) continue;
     // A sweep's estimator has a pilot of its own beside those of the points.
     const std::string& name = side.estimator->name;
     const std::string& listed = side.estimator->listed;

@@ -9,7 +9,7 @@
 
 #include "estimators/core/quoting.h"
 #include "estimators/parameters.h"
-#include "harness/base/whole_file.h"
+#include "harness/base/text_file.h"
 #include "harness/record/record_of.h"
 #include "harness/sampling/pool.h"
 #include "harness/suite/suite.h"

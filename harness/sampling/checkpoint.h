@@ -9,7 +9,7 @@
 #include <string>
 
 #include "harness/base/identity.h"
-#include "harness/base/whole_file.h"
+#include "harness/base/text_file.h"
 #include "harness/sampling/executor.h"
 
 namespace assay::harness {

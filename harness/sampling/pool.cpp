@@ -121,7 +121,7 @@ Pool::Pool(std::shared_ptr<const Setup> setup, Recipe recipe)
       block_size_(block_size_of(primaries_of_observation(*setup_, recipe_.primaries))),
       channels_(setup_->channel_count()),
       elements_(elements_of(*setup_)) {
-  if (const RecordedRun* run = as_recorded_run(*setup_)) ready_made_ = &run->summary();
+  if (const RecordedRun* run = as_recorded_run(*setup_)) ready_made_ = &run->summary;
   // Files of pictures are read once.
   if (setup_->image()) keep_observations(setup_->observations().value_or(0));
   for (const std::uint64_t count : std::exchange(recipe_.marks, {})) mark(count);

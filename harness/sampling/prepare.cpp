@@ -59,11 +59,11 @@ PreparedEstimator prepare(const EstimatorEntry& entry, const std::string& folder
       .where = entry.where,
       .given = entry.parameters};
   if (const RecordedRun* run = as_recorded_run(*prepared.setup)) {
-    if (entry.primaries.value_or(run->primaries()) != run->primaries()) {
+    if (entry.primaries.value_or(run->primaries) != run->primaries) {
       refuse(entry.where, "the moments of `{}` are of {} primaries each: leave `primaries` out",
-             entry.name, run->primaries());
+             entry.name, run->primaries);
     }
-    prepared.primaries = run->primaries();
+    prepared.primaries = run->primaries;
   } else if (prepared.setup->observations() && entry.primaries.value_or(1) != 1) {
     refuse(entry.where, "`{}` reads finished observations: leave `primaries` out", entry.plugin);
   }

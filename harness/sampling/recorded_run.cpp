@@ -78,29 +78,30 @@ std::optional<stats::JointMoments> joint_of(const reports::Sample& sample, Count
   return stats::joint_of_four(moments_of(sample), static_cast<double>(total / sample.secondaries));
 }
 
-RecordedRun::Contents contents_of(const Kept& kept, const reports::Suite& suite) {
+std::shared_ptr<RecordedRun> run_of(const Kept& kept, const reports::Suite& suite) {
   const reports::Sample& first = *kept[0];
-  RecordedRun::Contents contents{.primaries = first.primaries};
-  contents.knows_cost.fill(true);
-  contents.summary.count = first.secondaries;
-  contents.summary.cost = cost_of(first.cost);
-  contents.summary.seconds = first.cost.seconds;
+  auto run = std::make_shared<RecordedRun>();
+  run->primaries = first.primaries;
+  run->known_costs.fill(true);
+  run->summary.count = first.secondaries;
+  run->summary.cost = cost_of(first.cost);
+  run->summary.seconds = first.cost.seconds;
   for (const reports::Sample* sample : kept) {
-    contents.channels.push_back(sample->channel);
+    run->names.push_back(sample->channel);
     const stats::Moments moments = moments_of(*sample);
-    ChannelDetails& details = contents.summary.detailed[contents.summary.channels.size()];
-    contents.summary.channels.push_back({.moments = moments});
+    ChannelDetails& details = run->summary.detailed[run->summary.channels.size()];
+    run->summary.channels.push_back({.moments = moments});
     for (const CountedCost kind : {rays_cost, samples_cost}) {
       const auto joint = joint_of(*sample, kind);
-      contents.knows_cost[kind] = contents.knows_cost[kind] && joint;
+      run->known_costs[kind] = run->known_costs[kind] && joint;
       details.joint.emplace_back(joint.value_or(stats::joint_of_four(moments)));
     }
   }
   for (const reports::EstimatorSummary& row : suite.estimators) {
-    if (row.name == first.estimator) contents.averages = row.variance_of == "primary";
+    if (row.name == first.estimator) run->averages = row.variance_of == "primary";
   }
-  if (first.plugin != "recorded") contents.stream = read_stream(first.stream);
-  return contents;
+  if (first.plugin != "recorded") run->stream = read_stream(first.stream);
+  return run;
 }
 
 std::string wanted_estimator(Parameters& parameters, const reports::Record& record) {
@@ -139,7 +140,7 @@ std::unique_ptr<Estimator> RecordedRun::make() const {
 
 bool RecordedRun::knows_cost(CostKind kind) const {
   if (kind == CostKind::seconds) return false;
-  return contents_.knows_cost[kind == CostKind::rays ? rays_cost : samples_cost];
+  return known_costs[kind == CostKind::rays ? rays_cost : samples_cost];
 }
 
 const RecordedRun* as_recorded_run(const Setup& setup) {
@@ -180,9 +181,9 @@ std::shared_ptr<const RecordedRun> read_recorded_run(Parameters& parameters) {
                     "efficiency keeps them, not of an image and not if some value was not finite",
                     name));
   }
-  RecordedRun::Contents contents = contents_of(best, *of);
-  contents.file = parameters.file("run");
-  return std::make_shared<const RecordedRun>(std::move(contents));
+  const std::shared_ptr<RecordedRun> run = run_of(best, *of);
+  run->file = parameters.file("run");
+  return run;
 }
 
 }  // namespace assay::harness

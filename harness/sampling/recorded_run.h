@@ -17,34 +17,24 @@ namespace assay::harness {
 /// secondaries, all channels from one test.
 class RecordedRun final : public Setup {
  public:
-  struct Contents {
-    std::string file = {};
-    std::vector<std::string> channels = {};
-    Summary summary = Summary();
-    std::uint64_t primaries = 1;
-    bool averages = false;  ///< variance falls like 1 / primaries
-    std::optional<StreamKey> stream = {};
-    /// By CountedCost: true if the joint moments of value and cost are known.
-    std::array<bool, counted_costs> knows_cost = {};
-  };
-  explicit RecordedRun(Contents contents) : contents_(std::move(contents)) {}
+  std::string file = {};
+  std::vector<std::string> names = {};  ///< of the channels
+  Summary summary = Summary();
+  std::uint64_t primaries = 1;
+  bool averages = false;  ///< variance falls like 1 / primaries
+  std::optional<StreamKey> stream = {};
+  /// By CountedCost: true if the joint moments of value and cost are known.
+  std::array<bool, counted_costs> known_costs = {};
 
-  std::size_t channel_count() const override { return contents_.channels.size(); }
-  Channel channel(std::size_t place) const override { return {.name = contents_.channels[place]}; }
+  std::size_t channel_count() const override { return names.size(); }
+  Channel channel(std::size_t place) const override { return {.name = names[place]}; }
   /// Throws std::logic_error: there are no observations.
   std::unique_ptr<Estimator> make() const override;
-  std::optional<std::uint64_t> observations() const override { return contents_.summary.count; }
-  std::optional<Nature> nature() const override { return Nature{.averages = averages()}; }
-  std::string data_file() const override { return contents_.file; }
-  std::optional<StreamKey> data_stream() const override { return contents_.stream; }
-
-  const Summary& summary() const { return contents_.summary; }
-  std::uint64_t primaries() const { return contents_.primaries; }
-  bool averages() const { return contents_.averages; }
+  std::optional<std::uint64_t> observations() const override { return summary.count; }
+  std::optional<Nature> nature() const override { return Nature{.averages = averages}; }
+  std::string data_file() const override { return file; }
+  std::optional<StreamKey> data_stream() const override { return stream; }
   bool knows_cost(CostKind kind) const;
-
- private:
-  Contents contents_;
 };
 
 /// The set-up as moments of an earlier run, or null.

@@ -77,10 +77,10 @@ void require_moments_suffice(const Question& question) {
              "to that run",
              name);
     }
-    if (question.test->secondaries && *question.test->secondaries != run->summary().count) {
+    if (question.test->secondaries && *question.test->secondaries != run->summary.count) {
       refuse(question.test->place_of("secondaries"),
              "`{}` has the moments of {} observations together; leave `secondaries` out", name,
-             run->summary().count);
+             run->summary.count);
     }
   }
 }

@@ -1,5 +1,3 @@
-#include "harness/base/whole_file.h"
-
 #include <fcntl.h>
 #include <sys/file.h>
 #include <sys/stat.h>
