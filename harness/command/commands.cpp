@@ -190,7 +190,7 @@ reports::Record run_in_arena(const std::vector<Suite>& suites, const RunOptions&
   record.seconds = elapsed.count();
   if (options.ledger.empty()) return record;
   try {
-    record.ledger = add_to_ledger({options.ledger, started, record.tool.commit}, planned.suites);
+    record.ledger = add_to_ledger(options.ledger, record, planned.suites);
     note_ledger(record, planned.suites, options);
   } catch (const std::runtime_error& error) {
     if (ledger_fault == nullptr) throw;

@@ -112,7 +112,7 @@ struct Entry {
 };
 
 /// Adds a night to the open series, or to one that it opens.
-void add_night(LedgerBook& book, const LedgerRun& ledger, const Entry& entry,
+void add_night(LedgerBook& book, const reports::Record& record, const Entry& entry,
                const LedgerSeries& series, const NightValue& value, reports::LedgerSeries& result) {
   if (book.has_seed(series, entry.run.seed)) {
     result.note = fmt::format(
@@ -127,9 +127,9 @@ void add_night(LedgerBook& book, const LedgerRun& ledger, const Entry& entry,
     return;
   }
   const std::size_t index = book.open(series);
-  book.add({.date = ledger.date,
+  book.add({.date = record.started,
             .seed = entry.run.seed,
-            .commit = ledger.commit,
+            .commit = record.tool.commit,
             .series = index,
             .value = value});
   result.added = true;
@@ -187,7 +187,7 @@ void read_nights(reports::LedgerSeries& result, const LedgerBook& book, std::siz
   }
 }
 
-reports::LedgerSeries keep(LedgerBook& book, const LedgerRun& ledger, const Entry& entry) {
+reports::LedgerSeries keep(LedgerBook& book, const reports::Record& record, const Entry& entry) {
   const TestOutcome& test = entry.work.outcome;
   LedgerSeries series{.hash = series_hash(entry.work, entry.channel),
                       .weight = test.place.weight,
@@ -203,7 +203,7 @@ reports::LedgerSeries keep(LedgerBook& book, const LedgerRun& ledger, const Entr
   const NightEvidence night = night_evidence(entry.work, entry.channel);
   series.reference_error = night.reference_error;
   if (night.value) {
-    add_night(book, ledger, entry, series, *night.value, result);
+    add_night(book, record, entry, series, *night.value, result);
   } else {
     result.note = "nothing added: " + night.obstacle;
   }
@@ -286,21 +286,22 @@ void require_ledger(const std::string& file) {
   read_ledger(file);
 }
 
-reports::Ledger add_to_ledger(const LedgerRun& ledger, const SuiteRuns& runs) {
-  const LockedFile lock(ledger.file);
-  LedgerBook book = read_ledger(ledger.file);
-  const bool is_new = std::filesystem::file_size(ledger.file) == 0;
-  reports::Ledger result{.file = ledger.file, .budget = book.budget()};
+reports::Ledger add_to_ledger(const std::string& file, const reports::Record& record,
+                              const SuiteRuns& runs) {
+  const LockedFile lock(file);
+  LedgerBook book = read_ledger(file);
+  const bool is_new = std::filesystem::file_size(file) == 0;
+  reports::Ledger result{.file = file, .budget = book.budget()};
   const std::size_t before = book.nights().size();
   for (const auto& run : runs) {
     for (const TestWork& work : run->tests) {
       if (!work.outcome.place.inside) continue;
       for (std::size_t channel = 0; channel < work.outcome.question.channel_count(); ++channel) {
-        result.series.push_back(keep(book, ledger, {*run, work, channel}));
+        result.series.push_back(keep(book, record, {*run, work, channel}));
       }
     }
   }
-  if (is_new || book.nights().size() > before) write_whole(ledger.file, book.text());
+  if (is_new || book.nights().size() > before) write_whole(file, book.text());
   return result;
 }
 

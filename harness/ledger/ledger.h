@@ -65,16 +65,11 @@ double generation_share(int generation);
 /// file and a missing folder.
 void require_ledger(const std::string& file);
 
-struct LedgerRun {
-  std::string file;
-  std::string date;  ///< start of the run, UTC, ISO 8601
-  std::string commit;
-};
-
 /// Adds the evidence of every selected test inside its suite's family to the file, unless its seed
 /// is there already. Returns what all nights of these tests mean together. An alarm is raised if E
 /// reaches 1 / (budget * the channel's weight in its suite * generation_share). The file is locked
 /// while it is read and replaced.
-reports::Ledger add_to_ledger(const LedgerRun& ledger, const SuiteRuns& runs);
+reports::Ledger add_to_ledger(const std::string& file, const reports::Record& record,
+                              const SuiteRuns& runs);
 
 }  // namespace assay::harness
