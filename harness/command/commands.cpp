@@ -93,46 +93,6 @@ void note_ledger(reports::Record& record, const SuiteRuns& runs, const RunOption
   }
 }
 
-/// Tells of broken claims, and whether to draw on.
-class Listener {
- public:
-  Listener(const PlannedRun& planned, const RunOptions& options, const Broken& broken)
-      : planned_(planned), options_(options), broken_(broken) {}
-
-  bool hear(const TestWork& work) {
-    for (const auto& run : planned_.suites) {
-      const bool its =
-          std::ranges::any_of(run->tests, [&](const TestWork& x) { return &x == &work; });
-      if (!its || !is_broken(work)) continue;
-      tell(*run, record_of_test(work, run->suite.file), *work.outcome.question.test);
-    }
-    return may_go_on();
-  }
-  bool hear_untested() {
-    for (const auto& run : planned_.suites) {
-      for (const Untested& each : run->untested) {
-        const reports::Test test = record_of_untested(each, *run);
-        if (reports::is_failed(reports::standing(test))) tell(*run, test, *each.test);
-      }
-    }
-    return may_go_on();
-  }
-  bool may_go_on() const { return !options_.fail_fast || first_.empty(); }
-  const std::string& first() const { return first_; }  ///< Id of the first broken claim, or "".
-
- private:
-  void tell(const SuiteRun& run, reports::Test test, const TestEntry& entry) {
-    if (first_.empty()) first_ = test.id;
-    add_replay(entry, run, planned_.suites, options_, test);
-    if (broken_) broken_(test);
-  }
-
-  const PlannedRun& planned_;
-  const RunOptions& options_;
-  const Broken& broken_;
-  std::string first_ = "";
-};
-
 /// Leaves out the tests that were not decided.
 void leave_out(SuiteRun& run, const std::string& why) {
   for (const TestWork& work : run.tests) {
@@ -162,13 +122,33 @@ reports::Record run_in_arena(const std::vector<Suite>& suites, const RunOptions&
     run->pilots.drop_drawn();
     for (TestWork& work : run->tests) tests.push_back(&work);
   }
-  Listener listener(planned, options, broken);
-  if (listener.hear_untested()) {
-    sample_in_looks(tests, planned.pools.all(),
-                    {.executor = executor_of(options),
-                     .cheapest_first = options.fail_fast,
-                     .decided = [&](const TestWork& work) { return listener.hear(work); }},
-                    progress);
+  std::string first;  // id of the first broken claim
+  const auto tell = [&](const SuiteRun& run, reports::Test test, const TestEntry& entry) {
+    if (first.empty()) first = test.id;
+    add_replay(entry, run, planned.suites, options, test);
+    if (broken) broken(test);
+  };
+  const auto may_go_on = [&] { return !options.fail_fast || first.empty(); };
+  for (const auto& run : planned.suites) {
+    for (const Untested& each : run->untested) {
+      const reports::Test test = record_of_untested(each, *run);
+      if (reports::is_failed(reports::standing(test))) tell(*run, test, *each.test);
+    }
+  }
+  const auto hear = [&](const TestWork& work) {
+    for (const auto& run : planned.suites) {
+      const bool its =
+          std::ranges::any_of(run->tests, [&](const TestWork& x) { return &x == &work; });
+      if (!its || !is_broken(work)) continue;
+      tell(*run, record_of_test(work, run->suite.file), *work.outcome.question.test);
+    }
+    return may_go_on();
+  };
+  if (may_go_on()) {
+    sample_in_looks(
+        tests, planned.pools.all(),
+        {.executor = executor_of(options), .cheapest_first = options.fail_fast, .decided = hear},
+        progress);
   }
   const bool none =
       std::ranges::none_of(tests, [](const TestWork* x) { return x->outcome.decided; });
@@ -181,8 +161,8 @@ reports::Record run_in_arena(const std::vector<Suite>& suites, const RunOptions&
         std::ranges::all_of(run->tests, [](const TestWork& work) { return work.outcome.decided; });
     if (interrupted())
       leave_out(*run, "the run was interrupted before its verdict");
-    else if (!listener.may_go_on())
-      leave_out(*run, fmt::format("the run ended early: `{}` is broken", listener.first()));
+    else if (!may_go_on())
+      leave_out(*run, fmt::format("the run ended early: `{}` is broken", first));
   }
   const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
   reports::Record record = record_of(planned.suites, options);
