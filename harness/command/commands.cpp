@@ -19,6 +19,7 @@
 #include "harness/base/record_file.h"
 #include "harness/base/terminal.h"
 #include "harness/command/describe.h"
+#include "harness/command/program.h"
 #include "harness/draws/sampler_setup.h"
 #include "harness/ledger/ledger.h"
 #include "harness/plan/plan.h"
@@ -261,45 +262,37 @@ int run_suites(const std::vector<Suite>& suites, const RunOptions& options, cons
   return code == nothing_ran && options.shard_of_runner ? 0 : code;
 }
 
-int plan_suites(const std::vector<Suite>& suites, const RunOptions& options, bool quiet) {
-  if (selects_nothing(suites, options.selection)) return nothing_ran;
-  const std::unique_ptr<Progress> progress = make_progress(quiet);
-  const PlannedRun planned = plan_run(suites, options, *progress);
+int plan_suites(const PlanCommand& command) {
+  const std::vector<Suite> suites = load_suites(command.suites, command.assignments);
+  if (selects_nothing(suites, command.options.selection)) return nothing_ran;
+  const std::unique_ptr<Progress> progress = make_progress(command.output.quiet);
+  if (command.list_renders) {
+    for (const foreign::MissingFile& each : missing_files(suites, command.options, *progress)) {
+      fmt::print("{}\t{}\t{}\n", each.command, each.seed, each.file);
+    }
+    return 0;
+  }
+  const PlannedRun planned = plan_run(suites, command.options, *progress);
   fmt::print("{}", plan_text(planned));
   return plan_exit_code(planned);
 }
 
-int list_renders(const std::vector<Suite>& suites, const RunOptions& options, bool quiet) {
-  if (selects_nothing(suites, options.selection)) return nothing_ran;
-  const std::unique_ptr<Progress> progress = make_progress(quiet);
-  for (const foreign::MissingFile& each : missing_files(suites, options, *progress)) {
-    fmt::print("{}\t{}\t{}\n", each.command, each.seed, each.file);
-  }
-  return 0;
-}
-
-int list_plugins() {
-  for (const Entry& entry : catalogue()) fmt::print("{}\n", entry.information.name);
-  return 0;
-}
-
-int list_lists() {
-  fmt::print("assay list plugins\nassay list tests SUITE...\n");
-  for (const Table& table : tables()) fmt::print("assay list {}\n", table.plural);
-  return 0;
-}
-
-int list_table(const std::string& plural) {
-  fmt::print("{}", text_of(*std::ranges::find(tables(), plural, &Table::plural)));
-  return 0;
-}
-
-int list_tests(const std::vector<Suite>& suites, const Selection& selection) {
-  if (selects_nothing(suites, selection)) return nothing_ran;
-  for (const Suite& suite : suites) {
-    for (const TestEntry& test : suite.tests) {
-      if (selects(selection, test)) fmt::print("{}\n", test.id);
+int print_list(const ListCommand& command) {
+  if (command.what == "tests") {
+    const std::vector<Suite> suites = load_suites(command.suites);
+    if (selects_nothing(suites, command.selection)) return nothing_ran;
+    for (const Suite& suite : suites) {
+      for (const TestEntry& test : suite.tests) {
+        if (selects(command.selection, test)) fmt::print("{}\n", test.id);
+      }
     }
+  } else if (command.what == "plugins") {
+    for (const Entry& entry : catalogue()) fmt::print("{}\n", entry.information.name);
+  } else if (command.what.empty()) {
+    fmt::print("assay list plugins\nassay list tests SUITE...\n");
+    for (const Table& table : tables()) fmt::print("assay list {}\n", table.plural);
+  } else {
+    fmt::print("{}", text_of(*std::ranges::find(tables(), command.what, &Table::plural)));
   }
   return 0;
 }

@@ -33,12 +33,6 @@ reports::Record run(const std::vector<Suite>& suites, const RunOptions& options,
 int run_suites(const std::vector<Suite>& suites, const RunOptions& options, const Output& output);
 /// Threads of each rank: as given, else one, since launchers start a rank for each core.
 unsigned threads_of_rank(const RunOptions& options);
-/// Prints a line for each file that programs would render for a run: command, seed and file, with
-/// tabs between.
-int list_renders(const std::vector<Suite>& suites, const RunOptions& options, bool quiet);
-/// Prints what a run would do; only pilots are drawn. Returns 4 if no test is selected, 1 if a test
-/// cannot come out as expected.
-int plan_suites(const std::vector<Suite>& suites, const RunOptions& options, bool quiet);
 /// Tables of at most 80 columns without colours: a row a test, with notes on the forecast and the
 /// pilot's gates below it. Totals end the page.
 std::string plan_text(const PlannedRun& planned);
@@ -72,13 +66,6 @@ struct SampleArguments {
 };
 int sample(const SampleArguments&);
 
-int list_plugins();
-/// The commands for all lists.
-int list_lists();
-/// Names and summaries of a table of describe.h.
-int list_table(const std::string& plural);
-/// One id a line. 4 when no test is selected.
-int list_tests(const std::vector<Suite>& suites, const Selection& selection);
 /// The page of a plugin, or those of the tables' rows of that name.
 int describe(const std::string& name);
 
@@ -126,6 +113,10 @@ struct RunCommand : SuitesCommand {};
 struct PlanCommand : SuitesCommand {
   bool list_renders = false;
 };
+/// Prints what a run would do; only pilots are drawn. Returns 4 if no test is selected, 1 if a test
+/// cannot come out as expected. Or prints a line for each file that programs would render: command,
+/// seed and file, with tabs between.
+int plan_suites(const PlanCommand&);
 
 struct CheckCommand : SamplingCommand {
   CheckArguments arguments;
@@ -145,6 +136,9 @@ struct ListCommand {
   std::vector<std::string> suites;
   Selection selection;
 };
+/// Prints ids of tests, names of plugins, names and summaries of a table, or all lists. Returns 4
+/// if no test is selected.
+int print_list(const ListCommand&);
 
 struct DescribeCommand {
   std::string name;  ///< of a plugin, or of a row of a table

@@ -50,18 +50,8 @@ int act(const Sampling& command) {
   return run_suites(suites, options, command.output);
 }
 
-int act(const PlanCommand& command) {
-  const auto act = command.list_renders ? list_renders : plan_suites;
-  return act(load_suites(command.suites, command.assignments), command.options,
-             command.output.quiet);
-}
-
-int act(const ListCommand& command) {
-  if (command.what == "tests") return list_tests(load_suites(command.suites), command.selection);
-  if (command.what.empty()) return list_lists();
-  return command.what == "plugins" ? list_plugins() : list_table(command.what);
-}
-
+int act(const PlanCommand& command) { return plan_suites(command); }
+int act(const ListCommand& command) { return print_list(command); }
 int act(const SampleArguments& arguments) { return sample(arguments); }
 int act(const DescribeCommand& command) { return describe(command.name); }
 int act(const ReplayArguments& arguments) { return replay(arguments); }

@@ -118,12 +118,12 @@ TEST(Wrapped, BreaksAtBlanksElseAtTheWidthAndKeepsLineEnds) {
 TEST(List, PrintsEveryPluginOnALine) {
   std::string expected;
   for (const Entry& entry : catalogue()) expected += entry.information.name + "\n";
-  EXPECT_EQ(printed(list_plugins), expected);
+  EXPECT_EQ(printed([] { return print_list({.what = "plugins"}); }), expected);
 }
 
 TEST(List, PrintsEveryRowOfATableIn80Columns) {
   for (const Table& table : tables()) {
-    const std::string text = printed([&] { return list_table(table.plural); });
+    const std::string text = printed([&] { return print_list({.what = table.plural}); });
     for (const TableRow& row : table.rows) {
       EXPECT_THAT(text, HasSubstr(row.name + " ")) << table.plural;
       EXPECT_FALSE(row.summary.empty()) << row.name;
