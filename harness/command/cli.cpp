@@ -2,8 +2,6 @@
 #include <malloc.h>
 
 #include <algorithm>
-#include <filesystem>
-#include <map>
 #include <memory>
 
 #include "estimators/catalogue.h"
@@ -602,30 +600,6 @@ Command parse_command_line(const std::vector<std::string>& arguments) {
     return TextCommand{help_of_claims(file->text)};
   }
   return parsed(arguments, command_rows());
-}
-
-std::vector<Suite> load_suites(const std::vector<std::string>& files,
-                               const std::vector<std::string>& assignments) {
-  std::vector<Suite> suites;
-  std::map<std::string, std::string> files_of;  // by stem
-  Mistakes mistakes;
-  for (const std::string& file : files) {
-    mistakes.attempt([&] { suites.push_back(read_suite(file, mistakes)); });
-    if (mistakes.any()) continue;
-    const auto [first, is_new] = files_of.emplace(suites.back().stem, file);
-    if (is_new) continue;
-    const std::string both = fmt::format("`{}` and `{}`", first->second, file);
-    if (std::filesystem::equivalent(first->second, file)) {
-      refuse({}, both + " are one suite; give it once");
-    }
-    refuse({},
-           "{} are two suites whose tests have the ids `{}/…`; rename one of the files, or run "
-           "each by itself",
-           both, first->first);
-  }
-  mistakes.refuse_any();
-  for (const std::string& assignment : assignments) set_parameter(suites, assignment);
-  return suites;
 }
 
 Loaded loaded(const Command& command) {

@@ -19,7 +19,6 @@
 #include "harness/base/record_file.h"
 #include "harness/base/terminal.h"
 #include "harness/command/describe.h"
-#include "harness/command/program.h"
 #include "harness/draws/sampler_setup.h"
 #include "harness/ledger/ledger.h"
 #include "harness/plan/plan.h"
@@ -212,6 +211,30 @@ Subject sampled_by(Source source, const Estimators& estimators, std::uint64_t se
 }
 
 }  // namespace
+
+std::vector<Suite> load_suites(const std::vector<std::string>& files,
+                               const std::vector<std::string>& assignments) {
+  std::vector<Suite> suites;
+  std::map<std::string, std::string> files_of;  // by stem
+  Mistakes mistakes;
+  for (const std::string& file : files) {
+    mistakes.attempt([&] { suites.push_back(read_suite(file, mistakes)); });
+    if (mistakes.any()) continue;
+    const auto [first, is_new] = files_of.emplace(suites.back().stem, file);
+    if (is_new) continue;
+    const std::string both = fmt::format("`{}` and `{}`", first->second, file);
+    if (std::filesystem::equivalent(first->second, file)) {
+      refuse({}, both + " are one suite; give it once");
+    }
+    refuse({},
+           "{} are two suites whose tests have the ids `{}/…`; rename one of the files, or run "
+           "each by itself",
+           both, first->first);
+  }
+  mistakes.refuse_any();
+  for (const std::string& assignment : assignments) set_parameter(suites, assignment);
+  return suites;
+}
 
 unsigned threads_of_rank(const RunOptions& options) { return std::max(1U, options.threads); }
 

@@ -20,6 +20,10 @@
 
 namespace assay::harness {
 
+/// The suites of these files with the parameters that `--set` assigns. InputError for any mistake.
+std::vector<Suite> load_suites(const std::vector<std::string>& files,
+                               const std::vector<std::string>& assignments = {});
+
 /// Hears of a broken claim when it is decided.
 using Broken = std::function<void(const reports::Test&)>;
 

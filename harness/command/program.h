@@ -16,10 +16,6 @@ namespace assay::harness {
 /// anything that is not as `--help` says.
 Command parse_command_line(const std::vector<std::string>& arguments);
 
-/// The suites of these files with the parameters that `--set` assigns. InputError for any mistake.
-std::vector<Suite> load_suites(const std::vector<std::string>& files,
-                               const std::vector<std::string>& assignments = {});
-
 /// A run that a command asks for.
 struct Loaded {
   std::vector<Suite> suites;

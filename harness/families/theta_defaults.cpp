@@ -28,7 +28,11 @@ Question Theta::bind(const TestEntry& test, const Estimators& estimators) const 
     question.factor = other->factor;
     question.subjects.push_back(estimates(other->quantity.source, estimators));
   } else {
-    question.references = references_of(claim, question.subjects[0]);
+    // The claim's number, or what the plugin knows of each channel.
+    const auto* const number = std::get_if<Constant>(&claim.right);
+    question.references = mapped(question.subjects[0].declared(), [&](const Channel& channel) {
+      return number != nullptr ? *number : claim.left.row->analytic(channel, claim.left.source);
+    });
   }
   return question;
 }

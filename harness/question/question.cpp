@@ -211,13 +211,6 @@ Constant analytic_variance(const Channel& channel, const Source& source) {
          source.estimator, channel.name);
 }
 
-std::vector<Constant> references_of(const Claim& claim, const Subject& subject) {
-  const auto* const number = std::get_if<Constant>(&claim.right);
-  return mapped(subject.declared(), [&](const Channel& channel) {
-    return number != nullptr ? *number : claim.left.row->analytic(channel, claim.left.source);
-  });
-}
-
 std::string sentence_of(const Fault& fault, const Subject& subject, const std::string& when) {
   const std::string& name = subject.estimator->name;
   return is_recorded(subject) ? fmt::format("`{}`: {}", name, fault.words)

@@ -147,9 +147,6 @@ Subject values(const Source& source, const Estimators& estimators);
 Constant analytic_mean(const Channel& channel, const Source& source);
 Constant analytic_variance(const Channel& channel, const Source& source);
 
-/// The right side for each channel: the claim's number, or what the plugin knows.
-std::vector<Constant> references_of(const Claim& claim, const Subject& subject);
-
 /// "32 x 32 irradiance".
 std::string image_name(const ImageShape& shape);
 /// InputError unless all subjects have as many channels, and all or none are images of one size.

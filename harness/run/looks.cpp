@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <limits>
 #include <map>
 #include <set>
@@ -198,9 +197,7 @@ void keep_for(const Plan& plan, const Subject& side, Pool& pool) {
     powers = std::max(powers, powers_of(method.keeps));
   }
   if (method.keeps == Keeps::group_variances) {
-    std::vector<std::size_t> channels;
-    std::ranges::copy(side.channels.all(), std::back_inserter(channels));
-    pool.keep_group_variances(std::move(channels));
+    pool.keep_group_variances(mapped(side.channels.all(), std::identity()));
   }
   if (method.keeps == Keeps::blocks) pool.keep_blocks();
   if (method.keeps == Keeps::cells) count_cells(side, pool);
