@@ -1,8 +1,7 @@
-#include "harness/ledger/ledger_book.h"
-
 #include <rapidcheck.h>
 
 #include "estimators/core/value.h"
+#include "harness/ledger/ledger.h"
 #include "tests/prelude.h"
 
 namespace assay::harness {

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include "harness/base/text_file.h"
-#include "harness/ledger/ledger_book.h"
 #include "harness/record/output.h"
 #include "tests/harness/prelude.h"
 #include "tests/philox.h"
