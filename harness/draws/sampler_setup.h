@@ -16,7 +16,7 @@
 #include "estimators/estimator.h"
 #include "estimators/sampler.h"
 #include "estimators/stream.h"
-#include "harness/draws/declared_density.h"
+#include "harness/draws/draw_cells.h"
 #include "stats/tails/tabulated_law.h"
 
 namespace assay::harness {

@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "harness/draws/declared_density.h"
+#include "harness/draws/draw_cells.h"
 #include "harness/question/question.h"
 #include "harness/theta/decision.h"
 #include "harness/theta/methods.h"

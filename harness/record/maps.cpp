@@ -10,7 +10,7 @@
 #include "harness/base/identity.h"
 #include "harness/base/numbers.h"
 #include "harness/base/parallel.h"
-#include "harness/draws/declared_density.h"
+#include "harness/draws/draw_cells.h"
 #include "harness/draws/sampler_setup.h"
 #include "harness/families/law.h"
 #include "harness/question/question.h"
