@@ -31,7 +31,6 @@
 #include "harness/sampling/checkpoint.h"
 #include "harness/sampling/pool.h"
 #include "harness/sampling/prepare.h"
-#include "harness/sampling/recorded_run.h"
 #include "reports/report_formats.h"
 #include "reports/words/display.h"
 

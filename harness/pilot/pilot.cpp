@@ -7,7 +7,7 @@
 #include <string>
 
 #include "harness/base/interrupt.h"
-#include "harness/sampling/recorded_run.h"
+#include "harness/sampling/prepare.h"
 #include "harness/theta/methods.h"
 #include "stats/images/image.h"
 

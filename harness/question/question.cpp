@@ -9,7 +9,7 @@
 
 #include "harness/draws/sampler_setup.h"
 #include "harness/sampling/pool.h"
-#include "harness/sampling/recorded_run.h"
+#include "harness/sampling/prepare.h"
 
 namespace assay::harness {
 namespace {

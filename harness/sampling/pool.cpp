@@ -12,7 +12,7 @@
 #include "estimators/core/thread_seconds.h"
 #include "estimators/core/value.h"
 #include "estimators/ready_made.h"
-#include "harness/sampling/recorded_run.h"
+#include "harness/sampling/prepare.h"
 #include "stats/gates/independence_gates.h"
 #include "stats/images/image_moments.h"
 #include "stats/variances/group_variance.h"

@@ -2,12 +2,14 @@
 
 // Prepares a suite's estimators: finds plugins, checks parameters, makes set-ups.
 
+#include <array>
 #include <map>
 #include <memory>
 #include <optional>
 #include <string>
 
 #include "estimators/estimator.h"
+#include "harness/sampling/summary.h"
 #include "harness/suite/suite.h"
 
 namespace assay::harness {
@@ -46,5 +48,34 @@ StreamKey key_of(const PreparedEstimator& estimator, std::uint64_t seed, std::ui
 /// A key in the record: 16 hexadecimal digits. nullopt if the text is something else.
 std::string stream_text(StreamKey key);
 std::optional<StreamKey> read_stream(const std::string& text);
+
+// ---- A saved record in place of an estimator: a claim reads its moments, and nothing is drawn.
+
+/// One estimator of a record (`recorded` with `run` and `estimator`): the moments of its
+/// secondaries, all channels from one test.
+class RecordedRun final : public Setup {
+ public:
+  std::string file = {};
+  std::vector<std::string> names = {};  ///< of the channels
+  Summary summary = Summary();
+  std::uint64_t primaries = 1;
+  bool averages = false;  ///< variance falls like 1 / primaries
+  std::optional<StreamKey> stream = {};
+  /// By CountedCost: true if the joint moments of value and cost are known.
+  std::array<bool, counted_costs> known_costs = {};
+
+  std::size_t channel_count() const override { return names.size(); }
+  Channel channel(std::size_t place) const override { return {.name = names[place]}; }
+  /// Throws std::logic_error: there are no observations.
+  std::unique_ptr<Estimator> make() const override;
+  std::optional<std::uint64_t> observations() const override { return summary.count; }
+  std::optional<Nature> nature() const override { return Nature{.averages = averages}; }
+  std::string data_file() const override { return file; }
+  std::optional<StreamKey> data_stream() const override { return stream; }
+  bool knows_cost(CostKind kind) const;
+};
+
+/// The set-up as moments of an earlier run, or null.
+const RecordedRun* as_recorded_run(const Setup& setup);
 
 }  // namespace assay::harness

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "harness/sampling/recorded_run.h"
+#include "harness/sampling/prepare.h"
 #include "harness/theta/theta.h"
 
 namespace assay::harness {

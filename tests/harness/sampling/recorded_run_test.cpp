@@ -1,7 +1,6 @@
-#include "harness/sampling/recorded_run.h"
-
 #include "harness/base/text_file.h"
 #include "harness/command/commands.h"
+#include "harness/sampling/prepare.h"
 #include "reports/report_formats.h"
 #include "tests/harness/prelude.h"
 
