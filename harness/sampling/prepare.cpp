@@ -119,7 +119,8 @@ std::shared_ptr<RecordedRun> run_of(const Kept& kept, const reports::Suite& suit
   for (const reports::EstimatorSummary& row : suite.estimators) {
     if (row.name == first.estimator) run->averages = row.variance_of == "primary";
   }
-  if (first.plugin != "recorded") run->stream = read_stream(first.stream);
+  const auto bits = read_as<std::uint64_t>(first.stream, 16);
+  if (bits && first.plugin != "recorded") run->stream = StreamKey{*bits};
   return run;
 }
 
@@ -278,11 +279,6 @@ StreamKey key_of(const PreparedEstimator& estimator, std::uint64_t seed, std::ui
 }
 
 std::string stream_text(StreamKey key) { return fmt::format("{:016x}", key.bits); }
-
-std::optional<StreamKey> read_stream(const std::string& text) {
-  const auto bits = read_as<std::uint64_t>(text, 16);
-  return bits ? std::optional(StreamKey{*bits}) : std::nullopt;
-}
 
 std::unique_ptr<Estimator> RecordedRun::make() const {
   throw std::logic_error("a recorded run has moments, not observations");

@@ -45,9 +45,8 @@ void share_random_numbers(const Suite& suite, Estimators& prepared);
 StreamKey key_of(const PreparedEstimator& estimator, std::uint64_t seed, std::uint32_t copy,
                  const std::string& purpose);
 
-/// A key in the record: 16 hexadecimal digits. nullopt if the text is something else.
+/// A key in the record: 16 hexadecimal digits.
 std::string stream_text(StreamKey key);
-std::optional<StreamKey> read_stream(const std::string& text);
 
 // ---- A saved record in place of an estimator: a claim reads its moments, and nothing is drawn.
 
