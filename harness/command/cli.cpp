@@ -6,7 +6,7 @@
 
 #include "estimators/catalogue.h"
 #include "harness/base/refuse.h"
-#include "harness/command/describe.h"
+#include "harness/command/help.h"
 #include "harness/command/options.h"
 #include "harness/command/program.h"
 #include "harness/language/claim.h"

@@ -18,7 +18,7 @@
 #include "harness/base/parallel.h"
 #include "harness/base/record_file.h"
 #include "harness/base/terminal.h"
-#include "harness/command/describe.h"
+#include "harness/command/help.h"
 #include "harness/draws/sampler_setup.h"
 #include "harness/ledger/ledger.h"
 #include "harness/plan/plan.h"

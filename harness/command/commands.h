@@ -70,9 +70,6 @@ struct SampleArguments {
 };
 int sample(const SampleArguments&);
 
-/// The page of a plugin, or those of the tables' rows of that name.
-int describe(const std::string& name);
-
 /// All that decides the numbers of a run: version, machine code, seed, options, and the files that
 /// suites name. Of a file it takes the size and the first mebibyte.
 Identity identity_of(const std::vector<Suite>& suites, const RunOptions& options);
@@ -136,7 +133,7 @@ struct CalibrateCommand {
 };
 
 struct ListCommand {
-  std::string what;  ///< "plugins", "tests", a table of describe.h; empty: all lists
+  std::string what;  ///< "plugins", "tests", a table of help.h; empty: all lists
   std::vector<std::string> suites;
   Selection selection;
 };

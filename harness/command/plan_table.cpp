@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "harness/command/commands.h"
-#include "harness/command/describe.h"
+#include "harness/command/help.h"
 #include "harness/plan/plan.h"
 #include "harness/run/planned_run.h"
 #include "harness/theta/theta.h"

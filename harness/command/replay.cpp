@@ -10,7 +10,7 @@
 #include "harness/base/interrupt.h"
 #include "harness/base/record_file.h"
 #include "harness/base/terminal.h"
-#include "harness/command/describe.h"
+#include "harness/command/help.h"
 #include "harness/command/program.h"
 #include "harness/draws/sampler_setup.h"
 #include "harness/question/question.h"

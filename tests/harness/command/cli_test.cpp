@@ -1,5 +1,6 @@
 #include "estimators/stream.h"
 #include "harness/base/version.h"
+#include "harness/command/help.h"
 #include "harness/command/program.h"
 #include "tests/harness/prelude.h"
 

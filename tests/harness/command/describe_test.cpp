@@ -1,7 +1,6 @@
-#include "harness/command/describe.h"
-
 #include "estimators/catalogue.h"
 #include "harness/command/commands.h"
+#include "harness/command/help.h"
 #include "harness/draws/sampler_setup.h"
 #include "tests/harness/prelude.h"
 
