@@ -30,8 +30,9 @@ using stats::Moments;
 
 stats::MeanSample sample_of(const stats::MeanTest& test, const Seen& seen, std::size_t subject) {
   const Moments& moments = seen.moments(subject);
-  stats::MeanSample sample{moments, range_of(seen.question, subject, seen.channel, moments),
-                           rounding_of(seen.question, subject, seen.channel)};
+  const Subject& side = seen.question.subjects[subject];
+  stats::MeanSample sample{moments, range_of(side, seen.channel, moments),
+                           rounding_of(side, seen.channel)};
   if (test.bets) {
     sample.cells = std::make_shared<const stats::ValueCells>(seen.data[subject].values);
   }
@@ -122,8 +123,8 @@ bool bets_on_range(const Question& question, const Pilots& pilots) {
     if (pilot == nullptr || !side.purpose.empty() || is_recorded(side)) return false;
     for (std::size_t channel = 0; channel < side.channels.size(); ++channel) {
       const PilotChannel seen = pilot_channel(question, subject, channel, pilots);
-      const stats::Range range = range_of(question, subject, channel, seen.moments);
-      const bool constant = is_constant(question, subject, channel, seen.moments);
+      const stats::Range range = range_of(side, channel, seen.moments);
+      const bool constant = is_constant(side, channel, seen.moments);
       if (!needed.are_finite(range) || !(range.low < range.high)) return false;
       // A pilot without finite values shows no mean.
       if (seen.moments.count == 0 || (seen.values.empty() && !constant)) return false;
@@ -221,7 +222,7 @@ bool are_two_valued(const TestOutcome& test, const std::vector<Known>& channels)
   return channels.size() == question.subjects.size() * question.channel_count() &&
          std::ranges::all_of(channels, [&](const Known& known) {
            const stats::Range range =
-               range_of(question, known.subject, known.channel, known.pilot.moments);
+               range_of(question.subjects[known.subject], known.channel, known.pilot.moments);
            // Rows declare no range: only 0 and 1 are surely a count of successes.
            if (known.rows && (range.low != 0 || range.high != 1)) return false;
            return test.plan.primaries[known.subject] == 1 && !known.pilot.values.empty() &&
@@ -246,10 +247,11 @@ bool can_afford_bets(TestOutcome betting, const Pilots& pilots) {
 /// the worse side, plus rounding.
 double unseen_shift(const Seen& seen, std::size_t subject, double level) {
   const stats::Moments& x = seen.moments(subject);
-  const stats::Range range = range_of(seen.question, subject, seen.channel, x);
+  const Subject& side = seen.question.subjects[subject];
+  const stats::Range range = range_of(side, seen.channel, x);
   const double unseen = -std::expm1(std::log(level) / static_cast<double>(x.count));
   return unseen * std::max({0.0, x.mean - range.low, range.high - x.mean}) +
-         rounding_of(seen.question, subject, seen.channel);
+         rounding_of(side, seen.channel);
 }
 
 /// Why two means cannot be compared if one is constant and its unseen values could decide; "" if
@@ -302,7 +304,7 @@ std::optional<ConstantVerdict> judge_constant(const Seen& seen, const Regions& r
   double rounding = 0;
   for (std::size_t subject = 0; subject < seen.data.size(); ++subject) {
     if (!is_constant(seen, subject)) return {};
-    rounding += question.factor_of(subject) * rounding_of(question, subject, seen.channel);
+    rounding += question.factor_of(subject) * rounding_of(question.subjects[subject], seen.channel);
   }
   const double reference =
       question.of_two() ? question.factor * seen.moments(1).mean : seen.reference().value;
@@ -548,7 +550,7 @@ class MeanTheta : public Theta {
     const reports::Effect& effect = outcome.channels[0].effect;
     const bool below = effect.estimate.value_or(0) < 0;
     for (std::size_t side = 0; side < question.compared(); ++side) {
-      const stats::Range range = range_of(question, side, outcome.channels[0].index, {});
+      const stats::Range range = range_of(question.subjects[side], outcome.channels[0].index, {});
       const bool upwards = below == (question.sign_of(side) > 0);
       const std::uint64_t seen = outcome.secondaries(side) * outcome.plan.primaries[side];
       if (std::isfinite(upwards ? range.high : range.low) || seen >= many) continue;
@@ -603,7 +605,7 @@ class MeanTheta : public Theta {
   static void note_range(const Question& question, std::size_t channel, const Moments& moments,
                          PlannedChannel& planned) {
     if (question.of_two()) return;
-    planned.range = range_of(question, 0, channel, moments);
+    planned.range = range_of(question.subjects[0], channel, moments);
     planned.null_value = question.references[channel].value + question.offset;
   }
 
@@ -620,7 +622,7 @@ class MeanTheta : public Theta {
       const Moments moments = pilot_channel(question, i, channel, pilots).moments;
       if (i == 0) note_range(question, channel, moments, planned);
       if (i == 1) other_mean = moments.mean;
-      if (is_constant(question, i, channel, moments)) continue;
+      if (is_constant(question.subjects[i], channel, moments)) continue;
       constant = false;
       const double averaged = question.subjects[i].averaged(plan.primaries[i]);
       planned.deviations[i] =

@@ -305,7 +305,7 @@ double hidden_deviation(const Seen& seen) {
   const double averaged = seen.question.subjects[0].averaged(seen.data[0].primaries);
   const double size = std::abs(seen.moments(0).mean) * averaged;
   const double spacing = std::nextafter(size, std::numeric_limits<double>::infinity()) - size;
-  return std::max(spacing, 2 * rounding_of(seen.question, 0, seen.channel));
+  return std::max(spacing, 2 * rounding_of(seen.question.subjects[0], seen.channel));
 }
 
 constexpr MethodTraits for_normal_values{.of_normal_values = true,

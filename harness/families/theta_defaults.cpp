@@ -139,7 +139,7 @@ std::vector<Known> known_channels(const TestOutcome& test, const Pilots& pilots)
     if (pilot == nullptr || !side.purpose.empty()) continue;
     for (std::size_t channel = 0; channel < side.channels.size(); ++channel) {
       const PilotChannel data = pilot_channel(side, *pilot, channel);
-      if (is_constant(question, subject, channel, data.moments)) continue;
+      if (is_constant(side, channel, data.moments)) continue;
       all.push_back({.subject = subject,
                      .channel = channel,
                      .pilot = data,

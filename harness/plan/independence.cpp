@@ -44,9 +44,7 @@ std::vector<Rows> rows_of(const Question& question, const Pilots& pilots, std::u
       const std::size_t used = std::min<std::uint64_t>(data.values.size(), count);
       const bool finite =
           std::ranges::all_of(data.values, [](double value) { return std::isfinite(value); });
-      if (!finite || used < fewest_in_order ||
-          is_constant(question, subject, channel, data.moments))
-        continue;
+      if (!finite || used < fewest_in_order || is_constant(side, channel, data.moments)) continue;
       all.push_back({.subject = subject,
                      .channel = channel,
                      .label = "rows of " + side.name_of(channel),

@@ -97,14 +97,13 @@ std::string misdeclared(const Question& question, const Pilots& pilots) {
 /// Why the pilot cannot choose: powers of its values are beyond doubles. Empty if none are.
 std::string unusable_pilot(const Question& question, const Pilots& pilots) {
   if (question.is().of_single_values) return "";
-  for (std::size_t subject = 0; subject < question.subjects.size(); ++subject) {
-    const Subject& side = question.subjects[subject];
+  for (const Subject& side : question.subjects) {
     const Pilot* pilot = pilot_of(side, pilots);
     if (pilot == nullptr || pilot->sums->elements || !side.purpose.empty()) continue;
     for (std::size_t channel = 0; channel < side.channels.size(); ++channel) {
       const stats::Moments moments = pilot->moments(side.channels[channel]);
       const std::string reason = beyond_doubles(moments, side.estimator->name);
-      if (!reason.empty() && !is_constant(question, subject, channel, moments)) return reason;
+      if (!reason.empty() && !is_constant(side, channel, moments)) return reason;
     }
   }
   return "";
@@ -155,7 +154,7 @@ std::uint64_t wanted_primaries(const Question& question, const FamilyPlace& plac
   const double limit = kurtosis_limit(question, place);
   for (std::size_t channel = 0; channel < question.subjects[subject].channels.size(); ++channel) {
     const stats::Moments& pilot = pilot_channel(question, subject, channel, pilots).moments;
-    if (is_constant(question, subject, channel, pilot)) continue;
+    if (is_constant(question.subjects[subject], channel, pilot)) continue;
     if (!beyond_doubles(pilot, "").empty()) continue;  // the plan says so
     wanted = std::max(wanted, stats::primaries_for_variance(pilot.kurtosis() - 3, limit));
   }
@@ -371,7 +370,7 @@ std::optional<std::vector<ChannelData>> expected_data(const TestOutcome& test, s
     const Pilot* const pilot = pilot_of(side, pilots);
     if (pilot == nullptr) return std::nullopt;
     const PilotChannel seen = pilot_channel(side, *pilot, channel);
-    if (is_constant(question, i, channel, seen.moments)) return std::nullopt;
+    if (is_constant(side, channel, seen.moments)) return std::nullopt;
     const double averaged = side.averaged(test.plan.primaries[i]);
     const stats::Moments moments =
         stats::moments_of_means(seen.moments, averaged, side.secondaries(secondaries));

@@ -329,23 +329,19 @@ std::string outside_of_range(const Subject& subject, const Summary& drawn) {
   return "";
 }
 
-stats::Range range_of(const Question& question, std::size_t subject, std::size_t channel,
-                      const stats::Moments& moments) {
-  const Subject& side = question.subjects[subject];
+stats::Range range_of(const Subject& side, std::size_t channel, const stats::Moments& moments) {
   if (is_recorded(side)) return {moments.minimum, moments.maximum};
   const Channel declared = side.declared(channel);
   return {declared.low, declared.high};
 }
 
-double rounding_of(const Question& question, std::size_t subject, std::size_t channel) {
-  const Subject& side = question.subjects[subject];
+double rounding_of(const Subject& side, std::size_t channel) {
   const Channel declared = side.declared(channel);
   return declared.rounding + relative_rounding(*side.setup) * std::abs(declared.mean.value_or(0));
 }
 
-bool is_constant(const Question& question, std::size_t subject, std::size_t channel,
-                 const stats::Moments& moments) {
-  return moments.maximum - moments.minimum <= 2 * rounding_of(question, subject, channel);
+bool is_constant(const Subject& side, std::size_t channel, const stats::Moments& moments) {
+  return moments.maximum - moments.minimum <= 2 * rounding_of(side, channel);
 }
 
 std::optional<double> no_point_of(const Subject& side, std::size_t channel) {

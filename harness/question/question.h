@@ -188,15 +188,13 @@ double relative_rounding(const Setup& setup);
 std::string outside_of_range(const Subject& subject, const Summary& drawn);
 
 /// A channel's declared range; for recorded data the range of their values.
-stats::Range range_of(const Question& question, std::size_t subject, std::size_t channel,
-                      const stats::Moments& moments);
+stats::Range range_of(const Subject& side, std::size_t channel, const stats::Moments& moments);
 
 /// The rounding that a channel declares of its values, and that of their mean in single precision.
-double rounding_of(const Question& question, std::size_t subject, std::size_t channel);
+double rounding_of(const Subject& side, std::size_t channel);
 
 /// True if the values differ by no more than twice the channel's declared rounding.
-bool is_constant(const Question& question, std::size_t subject, std::size_t channel,
-                 const stats::Moments& moments);
+bool is_constant(const Subject& side, std::size_t channel, const stats::Moments& moments);
 
 /// The value of a subject's channel that stands for "no point"; only samplers have one.
 std::optional<double> no_point_of(const Subject& side, std::size_t channel = 0);

@@ -54,7 +54,7 @@ struct Seen {
 };
 
 inline bool is_constant(const Seen& seen, std::size_t subject) {
-  return is_constant(seen.question, subject, seen.channel, seen.moments(subject));
+  return is_constant(seen.question.subjects[subject], seen.channel, seen.moments(subject));
 }
 
 /// Data that a method needs kept. `points` are the values of all channels together.

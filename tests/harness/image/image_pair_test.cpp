@@ -156,8 +156,8 @@ TEST(ImageRounding, IsNeitherBeyondARangeNorADifferenceFromTheMean) {
   Summary drawn(1);
   drawn.channels[0].moments.add(double{0.1F});
   EXPECT_EQ(outside_of_range(question.subjects[0], drawn), "");
-  EXPECT_LE(double{0.1F} - 0.1, rounding_of(question, 0, 0));
-  EXPECT_LT(rounding_of(question, 0, 0), 1e-8);
+  EXPECT_LE(double{0.1F} - 0.1, rounding_of(question.subjects[0], 0));
+  EXPECT_LT(rounding_of(question.subjects[0], 0), 1e-8);
   drawn.channels[0].moments.add(0.1 + 1e-7);
   EXPECT_NE(outside_of_range(question.subjects[0], drawn), "");
 }

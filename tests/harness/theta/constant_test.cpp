@@ -74,11 +74,12 @@ TEST(Constant, IsSpreadWithinTheDeclaredRounding) {
   stats::Moments moments;
   moments.add(integral);
   moments.add(integral * (1 + 0x1p-45));
-  EXPECT_TRUE(is_constant(rounded->questions[0], 0, 0, moments));
-  EXPECT_FALSE(is_constant(asked_of_constants("mean(normal) == 3")->questions[0], 0, 0, moments))
+  EXPECT_TRUE(is_constant(rounded->questions[0].subjects[0], 0, moments));
+  EXPECT_FALSE(
+      is_constant(asked_of_constants("mean(normal) == 3")->questions[0].subjects[0], 0, moments))
       << "declares no rounding";
   moments.add(integral * (1 + 0x1p-30));
-  EXPECT_FALSE(is_constant(rounded->questions[0], 0, 0, moments));
+  EXPECT_FALSE(is_constant(rounded->questions[0].subjects[0], 0, moments));
 }
 
 TEST(Constant, WithoutARangeNothingBoundsWhatWasNotSeen) {
