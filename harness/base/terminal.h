@@ -10,7 +10,7 @@
 #include <memory>
 #include <string>
 
-#include "harness/base/progress.h"
+#include "harness/base/work.h"
 
 namespace assay::harness {
 

@@ -11,7 +11,6 @@
 #include <cerrno>
 #include <chrono>
 #include <cstring>
-#include <filesystem>
 #include <fstream>
 #include <sstream>
 #include <stdexcept>
@@ -19,9 +18,9 @@
 #include <thread>
 #include <utility>
 
-#include "harness/base/interrupt.h"
 #include "harness/base/refuse.h"
 #include "harness/base/terminal.h"
+#include "harness/base/work.h"
 #include "reports/words/text.h"
 
 namespace assay::harness {

@@ -12,8 +12,6 @@
 #include <set>
 #include <thread>
 
-#include "harness/base/interrupt.h"
-#include "harness/base/parallel.h"
 #include "harness/base/terminal.h"
 #include "harness/language/laws.h"
 #include "harness/pilot/pilot.h"

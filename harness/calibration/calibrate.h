@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "harness/base/progress.h"
+#include "harness/base/work.h"
 #include "harness/record/output.h"
 #include "reports/record/calibration.h"
 

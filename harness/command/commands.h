@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "harness/base/identity.h"
-#include "harness/base/progress.h"
+#include "harness/base/work.h"
 #include "harness/calibration/calibrate.h"
 #include "harness/record/output.h"
 #include "harness/record/record_of.h"

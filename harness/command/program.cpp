@@ -13,8 +13,8 @@
 
 #include "estimators/core/waiting.h"
 #include "estimators/library_host.h"
-#include "harness/base/interrupt.h"
 #include "harness/base/text_file.h"
+#include "harness/base/work.h"
 #include "harness/command/options.h"
 #include "harness/ranks/ranks.h"
 #include "harness/run/planned_run.h"

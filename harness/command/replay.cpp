@@ -7,9 +7,9 @@
 #include <numeric>
 #include <vector>
 
-#include "harness/base/interrupt.h"
 #include "harness/base/record_file.h"
 #include "harness/base/terminal.h"
+#include "harness/base/work.h"
 #include "harness/command/help.h"
 #include "harness/command/program.h"
 #include "harness/draws/sampler_setup.h"

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <regex>
 
-#include "harness/base/parallel.h"
+#include "harness/base/work.h"
 #include "harness/families/families.h"
 #include "harness/image/image_evidence.h"
 #include "harness/plan/sizes.h"

@@ -2,14 +2,12 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>
 
 #include "estimators/stream.h"
-#include "harness/base/interrupt.h"
-#include "harness/base/parallel.h"
+#include "harness/base/work.h"
 #include "harness/theta/theta.h"
 #include "stats/basics/moments.h"
 #include "stats/images/image_equivalence.h"

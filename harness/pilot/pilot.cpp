@@ -4,9 +4,7 @@
 #include <limits>
 #include <numeric>
 #include <set>
-#include <string>
 
-#include "harness/base/interrupt.h"
 #include "harness/sampling/prepare.h"
 #include "harness/theta/methods.h"
 #include "stats/images/image.h"

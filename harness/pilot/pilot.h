@@ -11,7 +11,7 @@
 #include <variant>
 #include <vector>
 
-#include "harness/base/progress.h"
+#include "harness/base/work.h"
 #include "harness/question/question.h"
 #include "harness/sampling/executor.h"
 #include "harness/sampling/summary.h"

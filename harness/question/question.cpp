@@ -3,13 +3,11 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <cmath>
 #include <limits>
 #include <tuple>
 
 #include "harness/draws/sampler_setup.h"
 #include "harness/sampling/pool.h"
-#include "harness/sampling/prepare.h"
 
 namespace assay::harness {
 namespace {

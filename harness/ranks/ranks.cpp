@@ -8,9 +8,8 @@
 #include <thread>
 
 #include "estimators/core/value.h"
-#include "harness/base/interrupt.h"
-#include "harness/base/parallel.h"
 #include "harness/base/refuse.h"
+#include "harness/base/work.h"
 #include "harness/draws/sampler_setup.h"
 #include "harness/sampling/packing.h"
 

@@ -9,7 +9,7 @@
 #include "estimators/map_file.h"
 #include "harness/base/identity.h"
 #include "harness/base/numbers.h"
-#include "harness/base/parallel.h"
+#include "harness/base/work.h"
 #include "harness/draws/draw_cells.h"
 #include "harness/draws/sampler_setup.h"
 #include "harness/families/law.h"

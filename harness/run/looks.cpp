@@ -3,11 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <map>
 #include <set>
 #include <utility>
 
-#include "harness/base/interrupt.h"
 #include "harness/draws/sampler_setup.h"
 #include "harness/plan/independence.h"
 #include "harness/plan/sizes.h"

@@ -9,7 +9,7 @@
 #include <tuple>
 #include <vector>
 
-#include "harness/base/progress.h"
+#include "harness/base/work.h"
 #include "harness/pilot/pilot.h"
 #include "harness/plan/outcome.h"
 #include "harness/run/evaluate.h"

@@ -13,9 +13,7 @@
 
 #include "estimators/core/thread_seconds.h"
 #include "estimators/ready_made.h"
-#include "harness/base/interrupt.h"
 #include "harness/base/large_vector.h"
-#include "harness/base/parallel.h"
 #include "harness/image/image_evidence.h"
 #include "harness/plan/sizes.h"
 #include "harness/run/evaluate.h"

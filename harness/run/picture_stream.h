@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "harness/base/progress.h"
+#include "harness/base/work.h"
 #include "harness/pilot/pilot.h"
 #include "harness/question/question.h"
 #include "harness/sampling/prepare.h"

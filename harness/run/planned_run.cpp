@@ -11,8 +11,8 @@
 
 #include "estimators/core/program_path.h"
 #include "estimators/core/waiting.h"
-#include "harness/base/interrupt.h"
 #include "harness/base/refuse.h"
+#include "harness/base/work.h"
 #include "harness/plan/plan.h"
 #include "harness/run/picture_stream.h"
 #include "harness/theta/ask.h"

@@ -5,10 +5,9 @@
 #include <filesystem>
 
 #include "estimators/core/value.h"
-#include "harness/base/interrupt.h"
 #include "harness/base/refuse.h"
 #include "harness/base/terminal.h"
-#include "harness/base/text_file.h"
+#include "harness/base/work.h"
 #include "harness/sampling/packing.h"
 
 namespace assay::harness {

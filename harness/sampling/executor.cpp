@@ -5,9 +5,6 @@
 
 #include <algorithm>
 
-#include "harness/base/interrupt.h"
-#include "harness/base/parallel.h"
-
 namespace assay::harness {
 namespace {
 

@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "harness/base/progress.h"
+#include "harness/base/work.h"
 #include "harness/sampling/pool.h"
 #include "harness/suite/run_options.h"
 

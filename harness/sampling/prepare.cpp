@@ -13,7 +13,6 @@
 #include "estimators/catalogue.h"
 #include "harness/base/record_file.h"
 #include "harness/base/refuse.h"
-#include "harness/suite/suite.h"
 #include "harness/suite/yaml.h"
 #include "reports/report_formats.h"
 

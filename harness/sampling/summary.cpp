@@ -4,8 +4,7 @@
 
 #include <stdexcept>
 
-#include "harness/base/parallel.h"
-#include "stats/images/image_moments.h"
+#include "harness/base/work.h"
 
 namespace assay::harness {
 namespace {

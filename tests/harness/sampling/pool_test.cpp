@@ -1,6 +1,6 @@
 #include "harness/sampling/pool.h"
 
-#include "harness/base/progress.h"
+#include "harness/base/work.h"
 #include "harness/pilot/pilot.h"
 #include "harness/sampling/executor.h"
 #include "stats/basics/for_each.h"
