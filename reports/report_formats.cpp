@@ -1,7 +1,6 @@
 #include "reports/report_formats.h"
 
 #include <algorithm>
-#include <stdexcept>
 
 namespace assay::reports {
 

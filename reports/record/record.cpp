@@ -1,6 +1,5 @@
 #include "reports/record/record.h"
 
-#include <algorithm>
 #include <map>
 #include <span>
 #include <tuple>

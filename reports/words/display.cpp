@@ -8,12 +8,9 @@
 #include <boost/algorithm/string/split.hpp>
 #include <cctype>
 #include <cmath>
-#include <map>
 #include <set>
 #include <tuple>
 
-#include "reports/words/describe.h"
-#include "reports/words/kill_matrix.h"
 #include "reports/words/ledger.h"
 #include "reports/words/number.h"
 #include "reports/words/statements.h"
