@@ -22,9 +22,9 @@ using render::vector_of;
 std::shared_ptr<const Sampler> brdf_sampler(const SharedBrdf& brdf,
                                             std::function<std::optional<Point>(Stream&)> point,
                                             std::function<double(const Point&)> density) {
-  // Four standard deviations of the lobe of w_o, twice as wide as that of h, to a part.
+  // Four standard deviations of the lobe to a part.
   const auto parts = [width = brdf->width()](double range) {
-    return static_cast<std::size_t>(std::ceil(range / (8 * width)));
+    return static_cast<std::size_t>(std::ceil(range / (4 * width)));
   };
   const auto evaluate = [brdf](const Point& p) {
     return p[2] > 0 ? brdf->target(Target::brdf_cosine, vector_of(p)) : 0;
@@ -96,7 +96,7 @@ std::vector<ParameterInformation> incident_parameters() {
 
 std::shared_ptr<const Sampler> published_sampler(SharedBrdf brdf) {
   const auto point_above = [brdf](Stream& random) {
-    const Vector3 out = published_direction(*brdf, random);
+    const Vector3 out = brdf->sample(random);
     return out.z > 0 ? std::optional(point_of(out)) : std::nullopt;
   };
   return brdf_sampler(brdf, point_above,

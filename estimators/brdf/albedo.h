@@ -15,14 +15,8 @@ namespace assay::brdf {
 
 using SharedBrdf = std::shared_ptr<const render::HalfVectorBrdf>;
 
-/// A direction by the sampler that the reflectance's paper gives; below the horizon none came out.
-inline render::Vector3 published_direction(const render::HalfVectorBrdf& brdf, Stream& random) {
-  const double u = random.uniform();
-  return brdf.reflected(brdf.half_vector(u, random.uniform_open()));
-}
-
-/// That sampler, with p(w_o); directions below the horizon are invalid draws of weight 0. evaluate
-/// = f cos.
+/// The sampler that the reflectance's paper gives, with p(w_o); directions below the horizon are
+/// invalid draws of weight 0. evaluate = f cos.
 std::shared_ptr<const Sampler> published_sampler(SharedBrdf);
 
 /// Estimates the integral of f cos over the upper hemisphere, whose value stands in `channel`, by

@@ -39,23 +39,6 @@ class Lambert final : public Reflectance {
   double albedo_;
 };
 
-class Glossy final : public Reflectance {
- public:
-  explicit Glossy(brdf::SharedBrdf brdf) : brdf_(std::move(brdf)) {}
-
-  double value(const Vector3& w) const override { return brdf_->value(w); }
-  Vector3 sample(Stream& random) const override {
-    return brdf::published_direction(*brdf_, random);
-  }
-  double density(const Vector3& w) const override { return brdf_->density(w); }
-  double weight_bound() const override { return brdf_->weight_bound(); }
-  // The lobe of w is twice as wide as that of the half vector.
-  double width() const override { return 2 * brdf_->width(); }
-
- private:
-  brdf::SharedBrdf brdf_;
-};
-
 LightSampling area_sampling(SharedSetting setting) {
   const auto points = std::make_shared<const luminaire::AreaPrimary<>>(std::move(setting));
   const auto sample = [points](Stream& random) -> std::optional<LightPoint> {
@@ -97,11 +80,11 @@ SharedReflectance read_reflectance(Parameters& given) {
   };
   if (kind == "ward") {
     Parameters ward = parameters(brdf::ward_parameters());
-    return std::make_shared<Glossy>(brdf::read<render::Ward>(ward));
+    return brdf::read<render::Ward>(ward);
   }
   if (kind == "ashikhmin_shirley") {
     Parameters ashikhmin_shirley = parameters(brdf::ashikhmin_shirley_parameters());
-    return std::make_shared<Glossy>(brdf::read<render::AshikhminShirley>(ashikhmin_shirley));
+    return brdf::read<render::AshikhminShirley>(ashikhmin_shirley);
   }
   Parameters lambert =
       parameters({number_parameter("albedo", "reflected part of the light", "", {0, 1})});

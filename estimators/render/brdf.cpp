@@ -31,6 +31,11 @@ double HalfVectorBrdf::density(const Vector3& out) const {
   return half_vector_density(h) * jacobian(h);
 }
 
+Vector3 HalfVectorBrdf::sample(Stream& random) const {
+  const double u = random.uniform();
+  return reflected(half_vector(u, random.uniform_open()));
+}
+
 double HalfVectorBrdf::target(Target target, const Vector3& out) const {
   switch (target) {
     case Target::density:
@@ -111,8 +116,9 @@ double AshikhminShirley::rejection_bound(Target target) const {
   return target == Target::brdf ? largest / cosine : largest;
 }
 
+// The lobe of w_o is twice as wide as that of h, whose slopes have about this deviation at least.
 double AshikhminShirley::width() const {
-  return 1 / std::sqrt(std::max(material_.exponents.u, material_.exponents.v) + 1);
+  return 2 / std::sqrt(std::max(material_.exponents.u, material_.exponents.v) + 1);
 }
 
 // exp(-tan^2 d (...)) of a half vector of any length.
@@ -156,7 +162,7 @@ double Ward::rejection_bound(Target) const {
 
 double Ward::weight_bound() const { return 1 / std::sqrt(incident().z); }
 
-double Ward::width() const { return std::min(roughness_.x, roughness_.y); }
+double Ward::width() const { return 2 * std::min(roughness_.x, roughness_.y); }
 
 namespace {
 

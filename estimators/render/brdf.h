@@ -2,6 +2,8 @@
 
 // Anisotropic reflectances that are sampled through the half vector.
 
+#include <optional>
+
 #include "estimators/stream.h"
 #include "render/quadrature.h"
 #include "render/vector.h"
@@ -23,22 +25,36 @@ enum class Target {
   brdf_cosine,  ///< f cos theta_o, the integrand of the albedo
 };
 
+/// A BRDF f(w, viewer) with the viewer fixed and the directions w in the receiver's frame, +z up.
+class Reflectance {
+ public:
+  virtual ~Reflectance() = default;
+
+  /// f per steradian at w above the horizon.
+  virtual double value(const Vector3& w) const = 0;
+  /// A direction of density(w) per solid angle; below the horizon (z <= 0) none came out.
+  virtual Vector3 sample(Stream& random) const = 0;
+  virtual double density(const Vector3& w) const = 0;
+  /// An upper bound of f cos / density.
+  virtual double weight_bound() const = 0;
+  /// About the angle across a lobe.
+  virtual double width() const = 0;
+  /// f where it is the same for all directions.
+  virtual std::optional<double> constant() const { return {}; }
+};
+
 /// A reflectance f(w_i, w_o) with w_i fixed, in the local frame (normal +z), and its published
 /// sampler. The sampler draws an azimuth and a polar angle of the half vector h by inversion. It
 /// mirrors w_i: w_o = 2 (h . w_i) h - w_i. The density is p(w_o) = p_h(h) / (4 h . w_i). It
 /// integrates over the upper hemisphere to one minus the mass that falls below the horizon.
 ///
 /// Each part is a virtual function, so that one can be exchanged while the others stay.
-class HalfVectorBrdf {
+class HalfVectorBrdf : public Reflectance {
  public:
   /// `incident` points away from the surface, above the horizon.
   explicit HalfVectorBrdf(Angles incident) : incident_(direction(incident)) {}
-  virtual ~HalfVectorBrdf() = default;
 
   const Vector3& incident() const { return incident_; }
-
-  /// f per steradian at w_o above the horizon.
-  virtual double value(const Vector3& out) const = 0;
 
   /// The azimuth of h, from u uniform in [0, 1).
   virtual double azimuth(double u) const = 0;
@@ -53,7 +69,8 @@ class HalfVectorBrdf {
   /// d h / d w_o = 1 / (4 h . w_i).
   virtual double jacobian(const Vector3& h) const { return 1 / (4 * dot(h, incident_)); }
   /// p(w_o); 0 below the horizon.
-  double density(const Vector3& out) const;
+  double density(const Vector3& out) const override;
+  Vector3 sample(Stream& random) const override;
 
   /// The target per steradian, not normalised.
   double target(Target, const Vector3& out) const;
@@ -61,10 +78,6 @@ class HalfVectorBrdf {
   /// An upper bound of target(w_o) / q(w_o) over the upper hemisphere. The proposal is q = 1 / (4
   /// pi sqrt(cos theta_o)), that is cos theta_o = xi^2. Each override has the proof.
   virtual double rejection_bound(Target) const = 0;
-  /// An upper bound of f cos theta_o / p.
-  virtual double weight_bound() const = 0;
-  /// About the smallest standard deviation of the slope of h: the width of the lobe.
-  virtual double width() const = 0;
 
  private:
   Vector3 incident_;
