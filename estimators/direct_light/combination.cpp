@@ -58,4 +58,13 @@ Heuristic read_heuristic(Parameters& given) {
   return Heuristic::cutoff(number);
 }
 
+Counts read_counts(Parameters& given) {
+  return {.light = given.count("light_samples"), .brdf = given.count("brdf_samples")};
+}
+
+Pair read_probabilities(Parameters& given) {
+  const double light = given.number("light_probability");
+  return {light, 1 - light};
+}
+
 }  // namespace assay::direct_light

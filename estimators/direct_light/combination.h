@@ -85,6 +85,11 @@ struct Counts {
   Pair shares() const { return {static_cast<double>(light), static_cast<double>(brdf)}; }
 };
 
+/// Reads light_samples and brdf_samples, one or more of each.
+Counts read_counts(Parameters&);
+/// Reads light_probability, in (0, 1).
+Pair read_probabilities(Parameters&);
+
 /// X = sum over techniques of 1 / n_i times the sum over its n_i draws of w_i f / p_i (eq. 9.4).
 template <class Combination = WeightedByHeuristic>
 struct MultiSamplePrimary {

@@ -7,7 +7,7 @@
 #include <numbers>
 #include <utility>
 
-#include "direct_light/family.h"
+#include "direct_light/exact.h"
 #include "estimators/parameters.h"
 #include "luminaire/solid_angle.h"
 

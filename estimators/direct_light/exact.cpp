@@ -77,6 +77,15 @@ std::optional<render::Integrals<N>> over_visible(const Techniques& techniques, c
 
 }  // namespace
 
+Channel mean_channel(const std::optional<Known>& radiance) {
+  Channel channel{.name = "radiance"};
+  if (radiance) {
+    channel.mean = radiance->value;
+    channel.mean_error = radiance->error;
+  }
+  return channel;
+}
+
 Known Moments::multi_sample_variance(const Counts& counts) const {
   const auto& [value, error] = integrals_;
   const Pair n = counts.shares();

@@ -15,6 +15,9 @@ struct Known {
   double error = 0;
 };
 
+/// The channel `radiance` with its mean, where that is known, and nothing else.
+Channel mean_channel(const std::optional<Known>& radiance);
+
 /// Integrals over the directions in which the luminaire is seen, f standing for L f cos.
 class Moments {
  public:

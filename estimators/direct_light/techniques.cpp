@@ -60,15 +60,6 @@ LightSampling area_sampling(SharedSetting setting) {
 
 }  // namespace
 
-ParameterInformation brdf_parameter() {
-  return structure_parameter(
-      "brdf",
-      "the reflectance and its parameters: {lambert: {albedo}}, {ward: {alpha_x, alpha_y, theta_i, "
-      "phi_i}} or {ashikhmin_shirley: {nu, nv, reflectance, theta_i, phi_i}}; theta_i and phi_i "
-      "are the viewer's direction",
-      "{ward: {alpha_x: 0.15, alpha_y: 0.4, theta_i: 0.8, phi_i: 0.5}}");
-}
-
 SharedReflectance read_reflectance(Parameters& given) {
   const Value& value = given.structure("brdf");
   require_keys(value, "the brdf", {"lambert", "ward", "ashikhmin_shirley"});
@@ -107,12 +98,6 @@ LightSampling solid_angle_sampling(SharedSetting setting) {
   return {sample, density};
 }
 
-ParameterInformation light_sampling_parameter() {
-  return text_parameter("light_sampling",
-                        "how points of the luminaire are drawn: uniform in solid angle or in area",
-                        "solid_angle", {"solid_angle", "area"});
-}
-
 LightSampling read_light_sampling(Parameters& given, SharedSetting setting) {
   if (given.string("light_sampling") == "solid_angle") return solid_angle_sampling(setting);
   return area_sampling(std::move(setting));
@@ -146,6 +131,24 @@ Draw Techniques::brdf(Stream& random, Cost& cost) const {
   const luminaire::LightTriangle* const triangle = setting_->first_hit(setting_->ray(w), cost);
   if (!triangle || !triangle->emits) return {};
   return {integrand(w), density(*triangle, w)};
+}
+
+std::vector<ParameterInformation> common_parameters() {
+  return {
+      luminaire::scene_parameter(),
+      structure_parameter(
+          "brdf",
+          "the reflectance and its parameters: {lambert: {albedo}}, {ward: {alpha_x, alpha_y, "
+          "theta_i, phi_i}} or {ashikhmin_shirley: {nu, nv, reflectance, theta_i, phi_i}}; theta_i "
+          "and phi_i are the viewer's direction",
+          "{ward: {alpha_x: 0.15, alpha_y: 0.4, theta_i: 0.8, phi_i: 0.5}}")};
+}
+
+std::vector<ParameterInformation> parameters_with(std::vector<ParameterInformation> more) {
+  const ParameterInformation light_sampling = text_parameter(
+      "light_sampling", "how points of the luminaire are drawn: uniform in solid angle or in area",
+      "solid_angle", {"solid_angle", "area"});
+  return joined(joined(common_parameters(), {light_sampling}), more);
 }
 
 }  // namespace assay::direct_light

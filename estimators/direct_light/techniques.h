@@ -21,11 +21,9 @@ struct Pair {
 using render::Reflectance;
 using SharedReflectance = std::shared_ptr<const Reflectance>;
 
-/// The parameter `brdf`: a map with one key, `lambert` (albedo), `ward` or `ashikhmin_shirley`, and
-/// under it the parameters of that reflectance.
-ParameterInformation brdf_parameter();
-/// InputError at the offending node for what is not such a map, and whatever the reflectance
-/// refuses.
+/// Reads `brdf`: a map with one key, `lambert` (albedo), `ward` or `ashikhmin_shirley`, and under
+/// it the parameters of that reflectance. InputError at the offending node for what is not such a
+/// map, and whatever the reflectance refuses.
 SharedReflectance read_reflectance(Parameters&);
 
 /// A point of the luminaire, seen from the receiver.
@@ -47,7 +45,6 @@ struct LightSampling {
 LightSampling solid_angle_sampling(luminaire::SharedSetting);
 
 /// `light_sampling`: solid_angle or area.
-ParameterInformation light_sampling_parameter();
 LightSampling read_light_sampling(Parameters&, luminaire::SharedSetting);
 
 /// A direction that a technique drew.
@@ -86,5 +83,18 @@ class Techniques {
 };
 
 using SharedTechniques = std::shared_ptr<const Techniques>;
+
+/// scene and brdf.
+std::vector<ParameterInformation> common_parameters();
+/// scene, brdf, light_sampling and `more`.
+std::vector<ParameterInformation> parameters_with(std::vector<ParameterInformation> more);
+
+/// Reads what parameters_with() declares; `Kind` is made as Techniques is.
+template <class Kind = Techniques>
+std::shared_ptr<const Kind> read_techniques(Parameters& given) {
+  const luminaire::SharedSetting setting = luminaire::read_setting(given);
+  const SharedReflectance reflectance = read_reflectance(given);
+  return std::make_shared<const Kind>(setting, reflectance, read_light_sampling(given, setting));
+}
 
 }  // namespace assay::direct_light

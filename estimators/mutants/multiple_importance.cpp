@@ -7,7 +7,7 @@
 // the distance 2 in the mirror direction. The reflectance is Ashikhmin-Shirley with exponents 1000
 // and 100.
 
-#include "direct_light/family.h"
+#include "direct_light/exact.h"
 #include "estimators/mutant.h"
 
 namespace assay::plugins {
