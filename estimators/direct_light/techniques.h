@@ -6,7 +6,7 @@
 
 #include "estimators/parameters.h"
 #include "estimators/stream.h"
-#include "luminaire/family.h"
+#include "luminaire/exact.h"
 #include "render/brdf.h"
 #include "render/vector.h"
 

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "estimators/core/mapped.h"
-#include "luminaire/family.h"
+#include "luminaire/exact.h"
 #include "render/share_table.h"
 
 namespace assay::luminaire {

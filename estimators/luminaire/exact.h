@@ -2,6 +2,7 @@
 
 // The exact moments of a luminaire scene, without sampling.
 
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -40,6 +41,13 @@ std::optional<std::vector<SignedPolygon>> visible_parts(const Setting& setting);
 /// The integrals of a planar luminaire over its visible_parts(); none where there are none to be
 /// had.
 std::optional<ExactIntegrals> exact_integrals(const Setting& setting);
+
+/// E[X^2] for unit radiance of the primary X, if it can be had from the exact integrals.
+using SecondMoment = std::function<std::optional<double>(const ExactIntegrals&)>;
+
+/// The channel `irradiance` with all that is known exactly: the mean; the variance where
+/// subtracting the squared mean leaves ten digits; between 0 and `high`.
+Channel irradiance_channel(const Setting& setting, const SecondMoment& second_moment, double high);
 
 /// E = L lambert(polygon) of the whole polygon as it stands, without clipping at the horizon: right
 /// only where the luminaire lies above it.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 #include "estimators/core/mapped.h"
 
@@ -104,6 +105,27 @@ Setting::Setting(const SceneDescription& description, const Location& where)
     polygon_ = View(description.receiver).of(std::get<Polygon>(description.light.shape));
   }
   for (const LightTriangle& triangle : triangles_) area_ += triangle.area;
+}
+
+ParameterInformation scene_parameter() {
+  return structure_parameter(
+      "scene",
+      "a built-in scene (triangle, cornell_triangle, rectangle), or receiver, light and "
+      "occluders: `{receiver: {position: [0, 0, 0], normal: [0, 0, 1]}, light: {obj: lamp.obj}, "
+      "occluders: [{obj: chair.obj}]}`",
+      "triangle");
+}
+
+Information information(std::string name, std::string summary, std::string description) {
+  return {.name = std::move(name),
+          .summary = std::move(summary),
+          .description = std::move(description),
+          .parameters = {scene_parameter()}};
+}
+
+SharedSetting read_setting(Parameters& parameters) {
+  const SceneDescription scene = read_scene(parameters.structure("scene"), parameters.folder());
+  return std::make_shared<const Setting>(scene, parameters.where("scene"));
 }
 
 std::vector<Shape> occluder_shapes(const std::vector<Occluder>& occluders,

@@ -5,11 +5,18 @@
 //
 // All of it is in the receiver's frame. The receiver is the origin and its normal is +z. So the
 // receiver's cosine of a unit vector w is w.z, and every ray starts at the exact zero vector.
+//
+// All estimators of the family estimate the irradiance at a receiver from a diffuse luminaire,
+//   E = integral over directions w of L(w) max(0, n . w).
+// L(w) is the radiance of the luminaire if a ray along w hits it first, else 0. Parts of the
+// luminaire below the receiver's horizon, and sides that do not emit, contribute nothing.
 
+#include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
-#include "estimators/cost.h"
+#include "estimators/estimator.h"
 #include "luminaire/scene_description.h"
 #include "render/scene.h"
 #include "render/vector.h"
@@ -122,6 +129,14 @@ class Setting {
   render::Scene scene_;     // the luminaire and the occluders
   render::Scene blockers_;  // what can stand before the luminaire
 };
+
+using SharedSetting = std::shared_ptr<const Setting>;
+
+/// The parameter `scene`, common to the family, and static information with it.
+ParameterInformation scene_parameter();
+Information information(std::string name, std::string summary, std::string description);
+
+SharedSetting read_setting(Parameters& parameters);
 
 /// Occluders in the receiver's frame, as shapes of a scene.
 std::vector<render::Shape> occluder_shapes(const std::vector<Occluder>& occluders,

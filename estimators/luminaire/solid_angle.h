@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "estimators/core/mapped.h"
-#include "luminaire/family.h"
+#include "luminaire/exact.h"
 #include "render/share_table.h"
 #include "render/spherical_triangle.h"
 
