@@ -57,9 +57,8 @@ class Halving {
   }
 
   AdaptiveCells numbered() const {
-    AdaptiveCells found;
-    found.cells.grid = grid_;
-    for (std::size_t i = 0; i < grid_.size(); ++i) found.cells.parts.push_back(number(i, found));
+    AdaptiveCells found{.cells = {.grid = grid_, .nodes = nodes_}};
+    for (std::size_t i = 0; i < grid_.size(); ++i) number(i, found);
     return found;
   }
 
@@ -69,9 +68,7 @@ class Halving {
     Integral mass;
     std::size_t grid_cell = 0;
     int halvings = 0;
-    Along along = Along::x;
-    std::size_t halves = 0;  // Number of its halves, 0 if it has none.
-    bool guessed = false;    // The mass is the share of draws.
+    bool guessed = false;  // The mass is the share of draws.
   };
   struct Candidate {
     double mass;
@@ -85,6 +82,7 @@ class Halving {
   void add(const Known& known) {
     heaviest_.push({.mass = known.mass.value, .number = known_.size()});
     known_.push_back(known);
+    nodes_.emplace_back();
   }
 
   // A cell with no number between its ends stays whole. False if halving takes more evaluations
@@ -97,8 +95,9 @@ class Halving {
     const Known one = half_of(whole, lower);
     const Known two = half_of(whole, upper);
     if (ask_.exhausted()) return false;
-    known_[number].along = *along;
-    known_[number].halves = known_.size();
+    const bool along_x = *along == Along::x;
+    nodes_[number] = {
+        .halves = nodes_.size(), .along_x = along_x, .border = along_x ? upper.x.low : upper.y.low};
     add(one);
     add(two);
     return true;
@@ -115,22 +114,14 @@ class Halving {
             .guessed = guessed};
   }
 
-  HalvedCells::Part number(std::size_t cell, AdaptiveCells& found) const {
+  void number(std::size_t cell, AdaptiveCells& found) const {
+    if (const std::size_t halves = nodes_[cell].halves; halves > 0) {
+      number(halves, found);
+      number(halves + 1, found);
+      return;
+    }
+    found.cells.nodes[cell].number = found.cells.size();
     const Known& known = known_[cell];
-    if (known.halves == 0) return whole(known, found);
-    const std::size_t number_of_it = found.cells.halves.size();
-    const PlaneCell& upper = known_[known.halves + 1].cell;
-    const bool along_x = known.along == Along::x;
-    found.cells.halves.push_back(
-        {.along_x = along_x, .border = along_x ? upper.x.low : upper.y.low});
-    const HalvedCells::Part one = number(known.halves, found);
-    const HalvedCells::Part two = number(known.halves + 1, found);
-    found.cells.halves[number_of_it].parts = {one, two};
-    return {.whole = false, .number = number_of_it};
-  }
-
-  HalvedCells::Part whole(const Known& known, AdaptiveCells& found) const {
-    const HalvedCells::Part part{.whole = true, .number = found.cells.size()};
     const Integral mass = known.guessed ? ask_.integral(known.cell) : known.mass;
     found.cells.cells.push_back(known.cell);
     found.cells.grid_cells.push_back(known.grid_cell);
@@ -138,12 +129,12 @@ class Halving {
     found.mass.error.push_back(mass.error);
     found.mass.total += mass.value;
     found.mass.total_error += mass.error;
-    return part;
   }
 
   const PlaneGrid& grid_;
   const Questions& ask_;
   std::vector<Known> known_;
+  std::vector<HalvedCells::Node> nodes_;
   std::priority_queue<Candidate> heaviest_;
   double most_ = 1;
 };

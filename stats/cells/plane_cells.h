@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <vector>
 
@@ -35,20 +34,16 @@ std::vector<Integral> integrals_over(const PlaneGrid& grid, CellQuadrature& quad
 // grid. They are numbered in the grid's order, the lower half first. So neighbours in number are
 // neighbours in place.
 struct HalvedCells {
-  // The number of a halved cell, or of a whole one.
-  struct Part {
-    bool whole = true;
-    std::size_t number = 0;
-  };
-  struct Halves {
+  // A cell of the grid, or a half of another.
+  struct Node {
+    std::size_t halves = 0;  // Place of its lower half, before the upper one; 0 if it is whole.
     bool along_x = true;
-    double border = 0;  // A point on it is in the upper half.
-    std::array<Part, 2> parts = {};
+    double border = 0;       // A point on it is in the upper half.
+    std::size_t number = 0;  // Of a whole one.
   };
 
   PlaneGrid grid;
-  std::vector<Part> parts;  // Each of the grid's cells.
-  std::vector<Halves> halves;
+  std::vector<Node> nodes;              // The grid's cells first.
   std::vector<PlaneCell> cells;         // The whole ones.
   std::vector<std::size_t> grid_cells;  // The grid's cell around each.
 
