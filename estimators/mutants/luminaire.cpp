@@ -8,7 +8,6 @@
 #include "estimators/core/mapped.h"
 #include "estimators/mutant.h"
 #include "luminaire/area.h"
-#include "luminaire/floor.h"
 #include "luminaire/solid_angle.h"
 
 namespace assay::plugins {
