@@ -8,7 +8,6 @@
 #include <stdexcept>
 #include <utility>
 
-#include "estimators/core/flow.h"
 #include "estimators/core/mapped.h"
 
 namespace assay {

@@ -11,7 +11,6 @@
 #include <tuple>
 
 #include "estimators/core/mapped.h"
-#include "estimators/core/text_pattern.h"
 #include "estimators/core/value.h"
 
 namespace assay::recorded {

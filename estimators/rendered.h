@@ -3,6 +3,7 @@
 // Set-ups whose observations another program renders into files that are kept.
 
 #include <cstdint>
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -33,5 +34,9 @@ class Rendered {
   /// The programs started again so far, by seed.
   virtual std::vector<Retry> retries() const = 0;
 };
+
+/// The file of a program where a shell would find it: in the folders of PATH. A word with a slash
+/// is relative to `folder`. Empty if there is none that may be executed.
+std::filesystem::path program_path(const std::string& word, const std::filesystem::path& folder);
 
 }  // namespace assay::foreign

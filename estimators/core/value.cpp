@@ -1,5 +1,7 @@
 #include "estimators/core/value.h"
 
+#include <yaml-cpp/yaml.h>
+
 #include <algorithm>
 #include <array>
 #include <boost/algorithm/string.hpp>
@@ -57,6 +59,24 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
     }
   }
   return d[a.size()][b.size()];
+}
+
+Value value_of(const YAML::Node& node, std::string_view source) {
+  constexpr std::string_view null = "null";
+  const auto place = static_cast<std::size_t>(node.Mark().pos);
+  if (node.IsNull() && source.substr(place).starts_with(null)) return {};
+  if (node.IsScalar()) return Value::scalar(node.Scalar());
+  if (node.IsSequence()) {
+    std::vector<Value> items;
+    for (const YAML::Node& item : node) items.push_back(value_of(item, source));
+    return Value::list(std::move(items));
+  }
+  if (!node.IsMap()) throw YAML::Exception(node.Mark(), "a value is missing");
+  std::vector<Value::Member> members;
+  for (const auto& each : node) {
+    members.emplace_back(each.first.Scalar(), value_of(each.second, source));
+  }
+  return Value::map(std::move(members));
 }
 
 }  // namespace
@@ -163,6 +183,17 @@ std::string Value::canonical() const {
   return "";
 }
 
+Value parse_flow(std::string_view text) {
+  // A word behind the text shows that the text is one value.
+  const std::string source = "[" + std::string(text) + "\n, end]";
+  try {
+    const YAML::Node list = YAML::Load(source);
+    if (list.size() == 2 && list[1].Scalar() == "end") return value_of(list[0], source);
+  } catch (const YAML::Exception&) {
+  }
+  throw std::logic_error("the fallback `" + std::string(text) + "` is no YAML of one line");
+}
+
 std::optional<double> parse_number(std::string_view text) {
   if (text.starts_with("+-")) return {};
   if (text.starts_with('+')) text.remove_prefix(1);
@@ -177,6 +208,28 @@ std::string_view take_word(std::string_view& line) {
   const std::string_view word = line.substr(begin, end - begin);
   line.remove_prefix(end);
   return word;
+}
+
+bool matches(std::string_view pattern, std::string_view text) {
+  std::size_t p = 0;
+  std::size_t t = 0;
+  std::size_t star = std::string_view::npos;  // the last one, and where the text went on after it
+  std::size_t after = 0;
+  while (t < text.size()) {
+    if (p < pattern.size() && pattern[p] == '*') {
+      star = p++;
+      after = t;
+    } else if (p < pattern.size() && (pattern[p] == '?' || pattern[p] == text[t])) {
+      ++p;
+      ++t;
+    } else if (star != std::string_view::npos) {
+      p = star + 1;
+      t = ++after;
+    } else {
+      return false;
+    }
+  }
+  return pattern.find_first_not_of('*', p) == std::string_view::npos;
 }
 
 std::string shortest_text(double value) {

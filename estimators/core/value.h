@@ -98,6 +98,11 @@ class Value {
   std::vector<Member> members_;
 };
 
+/// A declared fallback as a Value: YAML scalars, lists and maps, as in `[0, 0, 1]` or
+/// `{disc: {radius: .3}}`; `null` is null. The text is a plugin author's, not a user's. Throws
+/// std::logic_error on anything else.
+Value parse_flow(std::string_view text);
+
 /// The number that the whole of a text is, as std::from_chars reads it.
 template <class Number, class... Format>
 std::optional<Number> read_as(std::string_view text, Format... format) {
@@ -111,6 +116,10 @@ std::optional<Number> read_as(std::string_view text, Format... format) {
 std::optional<double> parse_number(std::string_view text);
 /// The next word of a line, which is removed from it; empty at the end.
 std::string_view take_word(std::string_view& line);
+
+/// True if a pattern matches the whole of a text. `*` stands for any text, `?` for any character.
+/// The time is at most the product of both lengths.
+bool matches(std::string_view pattern, std::string_view text);
 
 /// The shortest text that reads back as this number.
 std::string shortest_text(double value);

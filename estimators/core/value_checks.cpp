@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "estimators/core/flow.h"
-
 namespace assay {
 
 double finite_number(const Value& value, const std::string& what) {

@@ -4,7 +4,6 @@
 #include <stdexcept>
 #include <thread>
 
-#include "estimators/core/program_path.h"
 #include "estimators/estimator.h"
 #include "estimators/foreign/renderings.h"
 #include "estimators/foreign/setup.h"
@@ -163,7 +162,7 @@ void check_command(const Parameters& parameters, const std::vector<std::string>&
   require(!seed || !seeds, "has `{seed}` and `{seeds}`; use one of them");
   require(foreign::has_place(command, "{out}"), "lacks `{out}`, the file to write");
   for (const std::string& word : command) check_places(parameters, word);
-  require(!program_path(command[0], parameters.folder()).empty(),
+  require(!foreign::program_path(command[0], parameters.folder()).empty(),
           "names the program `" + command[0] + "`, which does not exist" +
               foreign::mend_of_program(command[0]));
 }

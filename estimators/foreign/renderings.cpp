@@ -8,6 +8,7 @@
 #include <atomic>
 #include <boost/algorithm/string.hpp>
 #include <chrono>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <ranges>
@@ -16,7 +17,6 @@
 #include <utility>
 
 #include "estimators/core/mapped.h"
-#include "estimators/core/program_path.h"
 #include "estimators/core/quoting.h"
 #include "estimators/core/waiting.h"
 #include "estimators/foreign/child.h"
@@ -60,6 +60,12 @@ class Hash {
   static constexpr Word prime = (Word{1} << 88) + 0x13b;
   Word state_ = (Word{0x6c62272e07bb0142} << 64) + 0x62b821756295c58d;
 };
+
+fs::path if_executable(const fs::path& file) {
+  std::error_code ignored;
+  const bool good = fs::is_regular_file(file, ignored) && access(file.c_str(), X_OK) == 0;
+  return good ? file : fs::path();
+}
 
 /// Size and time of change, or the contents of a file that is not large.
 std::string stamp_of(const fs::path& file, bool program) {
@@ -379,6 +385,19 @@ std::string Renderings::file(StreamKey key, std::uint64_t observation, std::uint
   const std::string failure = failure_of(samples, seed);
   if (!failure.empty()) throw std::runtime_error(failure);
   return path_of(samples, seed);
+}
+
+fs::path program_path(const std::string& word, const fs::path& folder) {
+  if (word.find('/') != word.npos) return if_executable(folder / word);
+  const char* const variable = std::getenv("PATH");
+  std::string rest = variable == nullptr ? "/usr/bin:/bin" : variable;
+  while (!rest.empty()) {
+    const std::size_t colon = std::min(rest.find(':'), rest.size());
+    const fs::path found = if_executable(fs::path(rest.substr(0, colon)) / word);
+    if (!found.empty()) return found;
+    rest.erase(0, colon + 1);
+  }
+  return {};
 }
 
 }  // namespace assay::foreign

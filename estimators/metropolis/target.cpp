@@ -6,7 +6,6 @@
 #include <stdexcept>
 #include <utility>
 
-#include "estimators/core/flow.h"
 #include "estimators/core/mapped.h"
 #include "estimators/core/value_checks.h"
 #include "paths/path.h"

@@ -7,7 +7,6 @@
 #include <exception>
 #include <string>
 
-#include "estimators/core/flow.h"
 #include "estimators/core/value.h"
 #include "estimators/core/value_checks.h"
 

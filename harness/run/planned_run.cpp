@@ -9,7 +9,6 @@
 #include <set>
 #include <tuple>
 
-#include "estimators/core/program_path.h"
 #include "estimators/core/waiting.h"
 #include "harness/base/refuse.h"
 #include "harness/base/work.h"
@@ -191,7 +190,7 @@ std::unique_ptr<SuiteRun> prepare_suite(const Suite& suite, const RunOptions& op
   share_budget(run->suite);
   run->seed = options.seed.value_or(suite.seed.value_or(1));
   for (const std::string& program : suite.needs) {
-    if (!program_path(program, suite.folder).empty()) continue;
+    if (!foreign::program_path(program, suite.folder).empty()) continue;
     const std::string lack = fmt::format("needs the program `{}`, which is not installed", program);
     for (const TestEntry& test : run->suite.tests) {
       run->untested.push_back({&test, reports::Verdict::skipped, lack});

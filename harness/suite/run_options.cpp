@@ -7,7 +7,7 @@
 #include <set>
 
 #include "estimators/core/quoting.h"
-#include "estimators/core/text_pattern.h"
+#include "estimators/core/value.h"
 #include "harness/suite/yaml.h"
 
 namespace assay::harness {

@@ -10,7 +10,7 @@
 #include <ranges>
 
 #include "estimators/catalogue.h"
-#include "estimators/core/text_pattern.h"
+#include "estimators/core/value.h"
 #include "harness/base/text_file.h"
 
 namespace assay::harness {

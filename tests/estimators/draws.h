@@ -4,7 +4,7 @@
 // alarm of 1e-6 a comparison unless they say so themselves; keys are those of seed 1.
 
 #include "estimators/catalogue.h"
-#include "estimators/core/flow.h"
+#include "estimators/core/value.h"
 #include "tests/prelude.h"
 
 namespace assay::tests {

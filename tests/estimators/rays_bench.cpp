@@ -19,7 +19,7 @@
 #include <vector>
 
 #include "estimators/catalogue.h"
-#include "estimators/core/flow.h"
+#include "estimators/core/value.h"
 #include "estimators/instruction_set.h"
 #include "paths/worlds.h"
 #include "render/hemisphere.h"

@@ -1,4 +1,4 @@
-#include "estimators/core/text_pattern.h"
+#include "estimators/core/value.h"
 #include "estimators/pictures.h"
 #include "tests/estimators/exr_kinds.h"
 #include "tests/estimators/prelude.h"

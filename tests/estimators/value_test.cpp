@@ -1,6 +1,5 @@
 #include "estimators/core/value.h"
 
-#include "estimators/core/flow.h"
 #include "tests/prelude.h"
 
 namespace assay {

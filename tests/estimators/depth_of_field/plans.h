@@ -5,7 +5,7 @@
 #include "depth_of_field/image.h"
 #include "depth_of_field/reconstruction.h"
 #include "estimators/catalogue.h"
-#include "estimators/core/flow.h"
+#include "estimators/core/value.h"
 #include "tests/prelude.h"
 
 namespace assay::tests {

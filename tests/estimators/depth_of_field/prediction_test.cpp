@@ -4,7 +4,7 @@
 
 #include "depth_of_field/exact.h"
 #include "depth_of_field/image.h"
-#include "estimators/core/flow.h"
+#include "estimators/core/value.h"
 #include "tests/prelude.h"
 
 namespace assay::depth_of_field {

@@ -1,6 +1,6 @@
 #include "luminaire/exact.h"
 
-#include "estimators/core/flow.h"
+#include "estimators/core/value.h"
 #include "tests/estimators/prelude.h"
 #include "tests/estimators/scenes.h"
 

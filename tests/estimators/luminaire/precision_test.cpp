@@ -1,6 +1,6 @@
 // How far Embree's single precision moves the outline of a luminaire.
 
-#include "estimators/core/flow.h"
+#include "estimators/core/value.h"
 #include "estimators/stream.h"
 #include "luminaire/setting.h"
 #include "render/hemisphere.h"

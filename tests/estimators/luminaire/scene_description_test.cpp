@@ -1,6 +1,6 @@
 #include "luminaire/scene_description.h"
 
-#include "estimators/core/flow.h"
+#include "estimators/core/value.h"
 #include "tests/prelude.h"
 
 namespace assay::luminaire {

@@ -2,7 +2,7 @@
 
 #include "paths/scene_description.h"
 
-#include "estimators/core/flow.h"
+#include "estimators/core/value.h"
 #include "tests/prelude.h"
 
 namespace assay::paths {
