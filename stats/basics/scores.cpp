@@ -4,9 +4,8 @@
 #include <boost/sort/pdqsort/pdqsort.hpp>
 #include <boost/sort/spreadsort/float_sort.hpp>
 #include <cmath>
+#include <cstdint>
 #include <numeric>
-
-#include "stats/basics/splitmix64.h"
 
 namespace assay::stats {
 namespace {
@@ -19,6 +18,14 @@ void put_in_order(std::span<const Real> values, std::vector<Placed<Real>>& order
   boost::sort::pdqsort_branchless(
       order.begin(), order.end(),
       [](const Placed<Real>& a, const Placed<Real>& b) { return a.value < b.value; });
+}
+
+// The finaliser of Steele, Lea and Flood (2014): every bit of x flips each bit of the result with
+// probability near 1/2.
+constexpr std::uint64_t splitmix64_finalised(std::uint64_t x) {
+  x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9;
+  x = (x ^ (x >> 27)) * 0x94d049bb133111eb;
+  return x ^ (x >> 31);
 }
 
 }  // namespace

@@ -2,12 +2,11 @@
 
 #include <algorithm>
 #include <bit>
+#include <boost/container_hash/hash.hpp>
 #include <cmath>
 #include <cstdint>
 #include <unordered_map>
 #include <vector>
-
-#include "stats/basics/splitmix64.h"
 
 namespace assay::stats {
 namespace {
@@ -27,7 +26,9 @@ struct Stay {
     return length == other.length && same(value, other.value);
   }
   std::uint64_t hash() const {
-    return splitmix64_finalised(std::bit_cast<std::uint64_t>(value) + 0x9e3779b97f4a7c15 * length);
+    std::size_t hash = length;
+    boost::hash_combine(hash, std::bit_cast<std::uint64_t>(value));
+    return hash;
   }
 };
 
