@@ -3,8 +3,6 @@
 #include <cstddef>
 #include <stdexcept>
 
-#include "estimators/philox.h"
-
 namespace assay {
 
 namespace {

@@ -244,42 +244,90 @@ std::shared_ptr<const Setup> costly_law(Parameters& parameters) {
   });
 }
 
+// An image of known means: brightness grows from left to right.
+//
+// X(x, y, c) = m(x, c) (1 + s Z) in column x, row y and component c. Z = (Y - E[Y]) / sqrt(Var Y),
+// Y of a named law. E[X] = m, Var X = (m s)^2. m(x, c) = (1 + 9 x / (width - 1)) (1, 0.8, 0.6)_c.
+
+std::shared_ptr<const Setup> ramp(Parameters& parameters) {
+  constexpr std::array<double, 3> colour = {1, 0.8, 0.6};
+  const std::size_t width = parameters.count("width");
+  ImageParts<Variable> parts{.shape = {.width = width,
+                                       .height = parameters.count("height"),
+                                       .independent = !parameters.boolean("shared")}};
+  if (parameters.boolean("colour")) parts.shape.components = {"red", "green", "blue"};
+  const double spread = parameters.number("spread");
+  const Law law = law_of(parameters);
+  if (!law.facts().variance) parameters.refuse("law", "has no variance: nothing brings it to 1");
+  for (std::size_t i = 0; i < width * parts.shape.components.size(); ++i) {
+    const std::size_t component = i % parts.shape.components.size();
+    const double column = static_cast<double>(i / parts.shape.components.size());
+    const double mean = (1 + 9 * column / static_cast<double>(width - 1)) * colour[component];
+    const double scale = mean * spread / std::sqrt(*law.facts().variance);
+    const Variable pixel{law, mean - scale * *law.facts().mean, scale};
+    parts.elements.push_back(channel_of(pixel));
+    parts.primaries.push_back(pixel);
+  }
+  return imaging(std::move(parts));
+}
+
+ParameterInformation size(const char* name, const char* summary) {
+  return count_parameter(name, summary, "16", {2, 4096});
+}
+
 }  // namespace
 
 std::vector<Entry> analytic_law() {
-  return {{{.name = "analytic/law",
-            .summary = "A variable of a named law.",
-            .description =
-                "Estimates the mean of shift + scale Y, Y of the law: bernoulli(p), "
-                "exponential(rate), lognormal(location, scale), normal(mean, sd), pareto(scale, "
-                "shape), student_t(freedom), uniform(low, high), zero_inflated(p), which is "
-                "exponential(1) with probability p and else 0. Mean, variance and range are "
-                "declared where they exist. A law with a density has the sampler `x`, within 6 "
-                "standard deviations of the mean. `assay calibrate` measures the methods on it.",
-            .parameters = {law_parameter(),
-                           number_parameter("shift", "what is added", "0", {-1e150, 1e150}),
-                           number_parameter("scale", "what Y is multiplied by", "1",
-                                            {0, 1e150, true})}},
-           law},
-          {{.name = "analytic/normal",
-            .summary = "A normal variable.",
-            .description = "Estimates mu by mu + sigma Z, Z standard normal (Box and Muller).",
-            .parameters = {number_parameter("mean", "mu", "0", {-1e300, 1e300}),
-                           number_parameter("deviation", "sigma", "1", {0, 1e150})}},
-           [](Parameters& given) {
-             const NormalLaw law = normal_law(given);
-             return averaging(Channel{.mean = law.mean, .variance = law.deviation * law.deviation},
-                              law);
-           }},
-          {{.name = "analytic/costly_law",
-            .summary = "A variable of a named law that costs rays in proportion to its size.",
-            .description =
-                "Estimates the mean of X, one of the laws of `analytic/law`, by X, which costs 1 + "
-                "floor(r |X|) shadow rays: a cost that is random and depends on the value. `assay "
-                "calibrate` measures claims on costs and efficiencies on it.",
-            .parameters = {law_parameter(),
-                           number_parameter("rays", "r, rays a unit of |X|", "100", {0, 1e6})}},
-           costly_law}};
+  return {
+      {{.name = "analytic/law",
+        .summary = "A variable of a named law.",
+        .description =
+            "Estimates the mean of shift + scale Y, Y of the law: bernoulli(p), "
+            "exponential(rate), lognormal(location, scale), normal(mean, sd), pareto(scale, "
+            "shape), student_t(freedom), uniform(low, high), zero_inflated(p), which is "
+            "exponential(1) with probability p and else 0. Mean, variance and range are "
+            "declared where they exist. A law with a density has the sampler `x`, within 6 "
+            "standard deviations of the mean. `assay calibrate` measures the methods on it.",
+        .parameters = {law_parameter(),
+                       number_parameter("shift", "what is added", "0", {-1e150, 1e150}),
+                       number_parameter("scale", "what Y is multiplied by", "1",
+                                        {0, 1e150, true})}},
+       law},
+      {{.name = "analytic/normal",
+        .summary = "A normal variable.",
+        .description = "Estimates mu by mu + sigma Z, Z standard normal (Box and Muller).",
+        .parameters = {number_parameter("mean", "mu", "0", {-1e300, 1e300}),
+                       number_parameter("deviation", "sigma", "1", {0, 1e150})}},
+       [](Parameters& given) {
+         const NormalLaw law = normal_law(given);
+         return averaging(Channel{.mean = law.mean, .variance = law.deviation * law.deviation},
+                          law);
+       }},
+      {{.name = "analytic/costly_law",
+        .summary = "A variable of a named law that costs rays in proportion to its size.",
+        .description =
+            "Estimates the mean of X, one of the laws of `analytic/law`, by X, which costs 1 + "
+            "floor(r |X|) shadow rays: a cost that is random and depends on the value. `assay "
+            "calibrate` measures claims on costs and efficiencies on it.",
+        .parameters = {law_parameter(),
+                       number_parameter("rays", "r, rays a unit of |X|", "100", {0, 1e6})}},
+       costly_law},
+      {{.name = "analytic/ramp",
+        .summary = "An image of known means: a ramp with noise in proportion to the mean.",
+        .description = "X = m (1 + spread Z), m growing from 1 to 10 from left to right, Z "
+                       "of a law as `analytic/law` names it, brought to mean 0 and variance 1. "
+                       "With `shared`, one Z serves all pixels of a primary: they are then fully "
+                       "correlated. `assay calibrate image` measures the method on it.",
+        .parameters =
+            {size("width", "columns"), size("height", "rows"),
+             boolean_parameter(
+                 "colour", "three components, of brightness 1, 0.8 and 0.6, instead of one", false),
+             number_parameter("spread", "standard deviation of a primary over its mean", "1",
+                              {0, 1e100}),
+             text_parameter("law", "law of Z, before it is shifted and scaled, as exponential(1)",
+                            "normal(0, 1)"),
+             boolean_parameter("shared", "whether all pixels get the same random numbers", false)}},
+       ramp}};
 }
 
 }  // namespace assay::plugins

@@ -6,7 +6,6 @@
 #include "depth_of_field/exact.h"
 #include "depth_of_field/scene_description.h"
 #include "depth_of_field/thin_lens.h"
-#include "estimators/core/running_moments.h"
 
 namespace assay::depth_of_field {
 
@@ -21,6 +20,30 @@ PlanePoint read_pixel(Parameters&);
 /// that of one lens sample divided by `samples`. It is stated only if quadrature and rounding leave
 /// it eight digits.
 Channel radiance_channel(const SceneDescription& scene, const Moments& moments, double samples = 1);
+
+/// Mean and variance of numbers as they come, by Welford's (1962) recurrence: mean += d / n,
+/// squares += d (x - mean), d = x - mean before. The sum of squares is of distances from the mean,
+/// so that nothing cancels and it is never negative.
+class RunningMoments {
+ public:
+  void add(double x) {
+    ++count_;
+    const double before = x - mean_;
+    mean_ += before / count_;
+    squares_ += before * (x - mean_);
+  }
+  /// A whole number.
+  double count() const { return count_; }
+  /// 0 of none.
+  double mean() const { return mean_; }
+  /// Sample variance, n - 1 in the denominator; NaN of fewer than two.
+  double variance() const { return squares_ / (count_ - 1); }
+
+ private:
+  double count_ = 0;
+  double mean_ = 0;
+  double squares_ = 0;
+};
 
 /// One lens sample at one pixel: the radiance along the ray from a point of the lens.
 template <class Disc = UniformDisc>

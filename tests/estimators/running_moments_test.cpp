@@ -1,10 +1,9 @@
 // Welford's moments against sums worked out by hand.
 
-#include "estimators/core/running_moments.h"
-
+#include "depth_of_field/pixel.h"
 #include "tests/prelude.h"
 
-namespace assay {
+namespace assay::depth_of_field {
 namespace {
 
 RunningMoments of(double shift) {
@@ -42,4 +41,4 @@ TEST(RunningMoments, OfOneNumberHaveNoVarianceToSpeakOf) {
 }
 
 }  // namespace
-}  // namespace assay
+}  // namespace assay::depth_of_field

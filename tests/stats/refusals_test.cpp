@@ -5,7 +5,6 @@
 #include "stats/cells/cell_effect.h"
 #include "stats/cells/chi_square_fit.h"
 #include "stats/cells/chi_square_two_sample.h"
-#include "stats/cells/sampled_cells.h"
 #include "stats/gates/assumption_gates.h"
 #include "stats/gates/dependence.h"
 #include "stats/gates/independence_gates.h"

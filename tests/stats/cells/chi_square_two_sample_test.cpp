@@ -1,6 +1,5 @@
 #include "stats/cells/chi_square_two_sample.h"
 
-#include "stats/cells/sampled_cells.h"
 #include "tests/stats/prelude.h"
 
 namespace assay::stats {
