@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "sky/directions.h"
-#include "sky/harmonics.h"
 #include "sky/octahedron.h"
 #include "sky/radiance.h"
 #include "sky/setting.h"

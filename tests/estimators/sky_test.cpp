@@ -1,6 +1,6 @@
 #include "render/polygon.h"
-#include "sky/harmonics.h"
 #include "sky/octahedron.h"
+#include "sky/radiance.h"
 #include "tests/estimators/prelude.h"
 
 namespace assay {
