@@ -1,6 +1,6 @@
 #include "depth_of_field/pixel.h"
 
-#include "estimators/core/value_checks.h"
+#include "estimators/core/value.h"
 #include "estimators/parameters.h"
 
 namespace assay::depth_of_field {

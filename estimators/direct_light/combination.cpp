@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "estimators/core/value_checks.h"
+#include "estimators/core/value.h"
 #include "estimators/parameters.h"
 
 namespace assay::direct_light {

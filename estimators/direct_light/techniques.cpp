@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "brdf/albedo.h"
-#include "estimators/core/value_checks.h"
+#include "estimators/core/value.h"
 #include "estimators/parameters.h"
 #include "luminaire/area.h"
 #include "luminaire/solid_angle.h"

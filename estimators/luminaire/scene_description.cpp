@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "estimators/core/mapped.h"
-#include "estimators/core/value_checks.h"
+#include "estimators/core/value.h"
 
 namespace assay::luminaire {
 

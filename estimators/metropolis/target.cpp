@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "estimators/core/mapped.h"
-#include "estimators/core/value_checks.h"
+#include "estimators/core/value.h"
 #include "paths/path.h"
 #include "paths/worlds.h"
 

@@ -5,7 +5,7 @@
 #include <numbers>
 #include <utility>
 
-#include "estimators/core/value_checks.h"
+#include "estimators/core/value.h"
 #include "luminaire/scene_description.h"
 #include "render/polygon.h"
 

@@ -8,7 +8,6 @@
 #include <string>
 
 #include "estimators/core/value.h"
-#include "estimators/core/value_checks.h"
 
 namespace assay::recorded {
 

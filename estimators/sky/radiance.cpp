@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "estimators/core/value_checks.h"
+#include "estimators/core/value.h"
 #include "estimators/parameters.h"
 #include "luminaire/scene_description.h"
 #include "render/environment_map.h"

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "estimators/core/mapped.h"
-#include "estimators/core/value_checks.h"
+#include "estimators/core/value.h"
 #include "estimators/estimator.h"
 
 namespace assay::steerable {
