@@ -154,17 +154,16 @@ class PictureSetup final : public Setup, public Pictures {
 
 class ReferenceSetup final : public Setup {
  public:
-  explicit ReferenceSetup(PictureMoments moments)
-      : moments_(std::move(moments)), shape_(moments_.shape) {}
+  explicit ReferenceSetup(PictureMoments moments) : moments_(std::move(moments)) {}
 
-  std::size_t channel_count() const override { return shape_.elements(); }
+  std::size_t channel_count() const override { return moments_.shape.elements(); }
   Channel channel(std::size_t place) const override {
     const std::vector<double>& errors = moments_.standard_error;
-    return {.name = element_name(shape_, place),
+    return {.name = element_name(moments_.shape, place),
             .mean = moments_.mean[place],
             .mean_error = errors.empty() ? 0 : errors[place]};
   }
-  std::optional<ImageShape> image() const override { return shape_; }
+  std::optional<ImageShape> image() const override { return moments_.shape; }
   std::unique_ptr<Estimator> make() const override {
     throw std::logic_error("a reference picture has no observations");
   }
@@ -173,7 +172,6 @@ class ReferenceSetup final : public Setup {
 
  private:
   PictureMoments moments_;
-  ImageShape shape_;
 };
 
 }  // namespace

@@ -18,32 +18,26 @@ class Sequence {
   Sequence(const char* function, std::span<const double> values, std::size_t fewest)
       : values_(values) {
     check::at_least({function, "count"}, values.size(), fewest);
-    Moments moments;
     for (const double value : values) {
       check::finite({function, "value"}, value);
-      moments.add(value);
+      moments_.add(value);
     }
-    if (moments.m2 == 0) throw ZeroVariance(std::string(function) + ": zero variance");
-    mean_ = moments.mean;
-    sum_of_squares_ = moments.m2;
-    skewness_ = moments.skewness();
+    if (moments_.m2 == 0) throw ZeroVariance(std::string(function) + ": zero variance");
   }
 
-  double skewness() const { return skewness_; }
+  double skewness() const { return moments_.skewness(); }
 
   double correlation(std::size_t lag) const {
     double sum = 0;
     for (std::size_t t = lag; t < values_.size(); ++t) {
-      sum += (values_[t] - mean_) * (values_[t - lag] - mean_);
+      sum += (values_[t] - moments_.mean) * (values_[t - lag] - moments_.mean);
     }
-    return sum / sum_of_squares_;
+    return sum / moments_.m2;
   }
 
  private:
   std::span<const double> values_;
-  double mean_ = 0;
-  double sum_of_squares_ = 0;
-  double skewness_ = 0;
+  Moments moments_;
 };
 
 // Half the degrees of the chi-square law whose skewness is s; none if it is as good as normal.

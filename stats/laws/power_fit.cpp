@@ -82,27 +82,17 @@ void check_plan(const char* function, const FitPlan& plan) {
   check::non_negative({function, "allow"}, plan.allow);
 }
 
-class FitPower {
- public:
-  FitPower(const FitPlan& plan, double n)
-      : plan_(plan),
-        n_(n),
-        critical_(noncentral_chi_square_quantile({Tail::upper, std::log(plan.rates.alpha)},
-                                                 noncentral(plan.allow))) {}
-
-  double at(double effect) const {
-    return std::exp(noncentral_chi_square_tails(critical_, noncentral(effect)).upper);
-  }
-
- private:
-  Noncentral noncentral(double effect) const {
-    return {plan_.degrees_of_freedom, n_ * effect * effect};
-  }
-
-  FitPlan plan_;
-  double n_;
-  double critical_;
-};
+// The power of a fit of n observations as a function of the effect.
+auto fit_power(const FitPlan& plan, double n) {
+  const auto law = [degrees = plan.degrees_of_freedom, n](double effect) {
+    return Noncentral{degrees, n * effect * effect};
+  };
+  const double critical =
+      noncentral_chi_square_quantile({Tail::upper, std::log(plan.rates.alpha)}, law(plan.allow));
+  return [law, critical](double effect) {
+    return std::exp(noncentral_chi_square_tails(critical, law(effect)).upper);
+  };
+}
 
 }  // namespace
 
@@ -143,15 +133,14 @@ double chi_square_fit_power(const FitPlan& plan, double n, double effect) {
   check_plan("chi_square_fit_power", plan);
   check_size("chi_square_fit_power", n);
   check::non_negative({"chi_square_fit_power", "effect"}, effect);
-  return FitPower(plan, n).at(effect);
+  return fit_power(plan, n)(effect);
 }
 
 double chi_square_fit_detectable(const FitPlan& plan, double n) {
   check_plan("chi_square_fit_detectable", plan);
   check_size("chi_square_fit_detectable", n);
-  const FitPower power(plan, n);
-  return planning::smallest_effect([&](double effect) { return power.at(effect); },
-                                   1 - plan.rates.beta, plan.allow, 1 / std::sqrt(n));
+  return planning::smallest_effect(fit_power(plan, n), 1 - plan.rates.beta, plan.allow,
+                                   1 / std::sqrt(n));
 }
 
 std::optional<std::uint64_t> chi_square_fit_sample_size(const FitPlan& plan, double detect) {
@@ -161,7 +150,7 @@ std::optional<std::uint64_t> chi_square_fit_sample_size(const FitPlan& plan, dou
   const double gap = detect - plan.allow;
   const double guess = (z * z + z * std::sqrt(2 * plan.degrees_of_freedom)) / (gap * gap);
   if (guess > planning::most_samples) return std::nullopt;
-  const auto enough = [&](double n) { return FitPower(plan, n).at(detect) >= 1 - plan.rates.beta; };
+  const auto enough = [&](double n) { return fit_power(plan, n)(detect) >= 1 - plan.rates.beta; };
   return planning::smallest_sample(enough, guess, 1);
 }
 
