@@ -6,7 +6,7 @@
 
 #include <cmath>
 
-#include "depth_of_field/thin_lens.h"
+#include "depth_of_field/scene_description.h"
 
 namespace assay::depth_of_field {
 

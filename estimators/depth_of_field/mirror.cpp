@@ -9,8 +9,8 @@
 #include "analytic/law.h"
 #include "depth_of_field/curved_mirror.h"
 #include "depth_of_field/exact.h"
+#include "depth_of_field/scene_description.h"
 #include "depth_of_field/spectrum.h"
-#include "depth_of_field/thin_lens.h"
 #include "estimators/parameters.h"
 
 namespace assay::plugins {

@@ -5,7 +5,6 @@
 
 #include "depth_of_field/exact.h"
 #include "depth_of_field/scene_description.h"
-#include "depth_of_field/thin_lens.h"
 
 namespace assay::depth_of_field {
 

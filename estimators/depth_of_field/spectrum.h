@@ -21,7 +21,7 @@
 #include <span>
 #include <vector>
 
-#include "depth_of_field/thin_lens.h"
+#include "depth_of_field/scene_description.h"
 
 namespace assay::depth_of_field {
 

@@ -5,7 +5,6 @@
 #include <cstdio>
 
 #include "estimators/core/waiting.h"
-#include "estimators/foreign/words.h"
 
 namespace assay::foreign {
 

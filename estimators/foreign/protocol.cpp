@@ -10,7 +10,6 @@
 #include <utility>
 
 #include "estimators/core/mapped.h"
-#include "estimators/foreign/words.h"
 
 namespace assay::foreign {
 

@@ -20,7 +20,7 @@
 #include "estimators/core/quoting.h"
 #include "estimators/core/waiting.h"
 #include "estimators/foreign/child.h"
-#include "estimators/foreign/words.h"
+#include "estimators/foreign/protocol.h"
 
 namespace assay::foreign {
 

@@ -13,7 +13,6 @@
 #include "estimators/core/mapped.h"
 #include "estimators/core/thread_seconds.h"
 #include "estimators/foreign/children.h"
-#include "estimators/foreign/words.h"
 
 namespace assay::foreign {
 

@@ -15,7 +15,6 @@
 
 #include "estimators/core/flush_denormals.h"
 #include "estimators/core/mapped.h"
-#include "estimators/foreign/words.h"
 #include "estimators/parameters.h"
 
 namespace assay::foreign {

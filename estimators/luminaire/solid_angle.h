@@ -9,8 +9,8 @@
 
 #include "estimators/core/mapped.h"
 #include "luminaire/exact.h"
+#include "render/polygon.h"
 #include "render/share_table.h"
-#include "render/spherical_triangle.h"
 
 namespace assay::luminaire {
 

@@ -1,5 +1,3 @@
-#include "render/spherical_triangle.h"
-
 #include "estimators/stream.h"
 #include "render/polygon.h"
 #include "tests/prelude.h"
