@@ -13,8 +13,8 @@ namespace assay {
 using PhiloxCounter = std::array<std::uint32_t, 4>;
 using PhiloxKey = std::array<std::uint32_t, 2>;
 
-/// Philox4x32-10 (Salmon, Moraes, Dror and Shaw 2011, "Parallel random numbers: as easy as 1, 2,
-/// 3"): a bijection of the 128-bit counters for each key, whose values are as good as random.
+/// Philox4x32-10: a bijection of the 128-bit counters for each key, whose values are as good as
+/// random (Salmon, Moraes, Dror and Shaw 2011, "Parallel random numbers: as easy as 1, 2, 3").
 /// Written out because every estimator includes it and the authors' header costs a second a file to
 /// compile; the tests compare the two.
 inline PhiloxCounter philox(PhiloxCounter x, PhiloxKey key) {

@@ -20,9 +20,9 @@ PlanePoint read_pixel(Parameters&);
 /// it eight digits.
 Channel radiance_channel(const SceneDescription& scene, const Moments& moments, double samples = 1);
 
-/// Mean and variance of numbers as they come, by Welford's (1962) recurrence: mean += d / n,
-/// squares += d (x - mean), d = x - mean before. The sum of squares is of distances from the mean,
-/// so that nothing cancels and it is never negative.
+/// Mean and variance of numbers as they come. Welford's (1962) recurrence: mean += d / n, squares
+/// += d (x - mean), d = x - mean before. The sum of squares is of distances from the mean, so that
+/// nothing cancels and it is never negative.
 class RunningMoments {
  public:
   void add(double x) {

@@ -6,7 +6,7 @@
 // All of it is in the receiver's frame. The receiver is the origin and its normal is +z. So the
 // receiver's cosine of a unit vector w is w.z, and every ray starts at the exact zero vector.
 //
-// All estimators of the family estimate the irradiance at a receiver from a diffuse luminaire,
+// The family estimates the irradiance at a receiver from a diffuse luminaire,
 //   E = integral over directions w of L(w) max(0, n . w).
 // L(w) is the radiance of the luminaire if a ray along w hits it first, else 0. Parts of the
 // luminaire below the receiver's horizon, and sides that do not emit, contribute nothing.

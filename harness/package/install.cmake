@@ -28,7 +28,7 @@ if(TARGET assay_googletest)
   install(EXPORT assayTargets NAMESPACE assay:: DESTINATION ${ASSAY_PACKAGE_DIR})
   # Their includes name these folders.
   foreach(header IN ITEMS harness/googletest/claims.h harness/googletest/matchers.h
-          estimators/stream.h estimators/philox.h)
+          estimators/stream.h)
     get_filename_component(folder ${header} DIRECTORY)
     install(FILES ${PROJECT_SOURCE_DIR}/${header}
       DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/assay/${folder})
