@@ -13,10 +13,10 @@ namespace assay {
 using PhiloxCounter = std::array<std::uint32_t, 4>;
 using PhiloxKey = std::array<std::uint32_t, 2>;
 
-/// Philox4x32-10: a bijection of the 128-bit counters for each key, whose values are as good as
-/// random (Salmon, Moraes, Dror and Shaw 2011, "Parallel random numbers: as easy as 1, 2, 3").
-/// Written out because every estimator includes it and the authors' header costs a second a file to
-/// compile; the tests compare the two.
+/// Philox4x32-10 is a bijection of the 128-bit counters for each key, whose values are as good as
+/// random. Its source is Salmon, Moraes, Dror and Shaw 2011, "Parallel random numbers: as easy as
+/// 1, 2, 3". Written out because every estimator includes it and the authors' header costs a second
+/// a file to compile; the tests compare the two.
 inline PhiloxCounter philox(PhiloxCounter x, PhiloxKey key) {
   constexpr int rounds = 10;
   for (int round = 0; round < rounds; ++round) {
