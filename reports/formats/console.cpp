@@ -106,7 +106,7 @@ class Screen {
     }
     if (std::ssize(text) > room(next, 2)) {
       if (!asked && test.verdict != Verdict::fail) next.clear();
-      const std::vector<std::string> more = step_lines(explanation(test));
+      const std::vector<std::string> more = step_lines(explanation(test.id));
       last.insert(last.end(), more.begin(), more.end());
       text = cut(wrapped(told, width - 1), room(next, 2));
     }
@@ -363,6 +363,7 @@ class Screen {
           ledger.file, Standing::broken);
       indented(alarm_sentence(series), in_full() ? unlimited : block_lines - used);
       if (in_full()) indented(series_sentence(series));
+      put(step_lines(explanation(series.test)));
       blank();
     }
     paragraph(one_line(ledger_title(ledger)) + ".");

@@ -70,6 +70,7 @@ std::string explain(const Suite& suite, const Test& test, int width, const Ledge
     say(false_alarms(suite.alpha) + " They are counted over all claims of the suite.");
   }
   std::vector<Step> next = steps(test);
+  bool alarms = false;
   for (const LedgerSeries& series : ledger.series) {
     if (!series.alarm || series.test != test.id) continue;
     out += "\n";
@@ -78,7 +79,11 @@ std::string explain(const Suite& suite, const Test& test, int width, const Ledge
                     series_sentence(series)));
     if (const std::string log = changes(series); !log.empty())
       next.push_back({.label = "what changed before that night", .paste = log});
+    alarms = true;
   }
+  if (alarms)
+    next.push_back({.label = "if the change is meant, begin anew with the next night",
+                    .paste = begin_anew(ledger, test.id)});
   if (next.empty()) return out;
   const Standing how = standing(test);
   const bool nothing =

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <boost/algorithm/string/classification.hpp>
-#include <boost/algorithm/string/replace.hpp>
 #include <boost/algorithm/string/split.hpp>
 #include <cctype>
 #include <cmath>
@@ -14,6 +13,7 @@
 #include "reports/words/ledger.h"
 #include "reports/words/number.h"
 #include "reports/words/statements.h"
+#include "reports/words/text.h"
 
 namespace assay::reports {
 namespace {
@@ -399,10 +399,8 @@ std::vector<Step> steps(const Test& test) {
   return all;
 }
 
-Step explanation(const Test& test) {
-  return {
-      .label = "more",
-      .paste = fmt::format("assay explain '{}'", boost::replace_all_copy(test.id, "'", "'\\''"))};
+Step explanation(const std::string& id) {
+  return {.label = "more", .paste = "assay explain " + in_single_quotes(id)};
 }
 
 }  // namespace assay::reports

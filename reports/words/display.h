@@ -129,6 +129,6 @@ void tell_once(const Test& test, std::map<std::string, std::string>& first,
                const std::function<void(const Test&)>& tell);
 
 /// The command that tells more of a test.
-Step explanation(const Test&);
+Step explanation(const std::string& id);
 
 }  // namespace assay::reports

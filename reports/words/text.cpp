@@ -226,6 +226,10 @@ std::string pad_right(std::string text, int width) {
   return text;
 }
 
+std::string in_single_quotes(const std::string& text) {
+  return "'" + boost::replace_all_copy(text, "'", "'\\''") + "'";
+}
+
 std::vector<std::string> wrap(std::string_view text, int width) {
   width = std::max(width, 2);
   std::vector<std::string> paragraphs, lines;

@@ -67,6 +67,9 @@ std::string shorten(std::string_view text, int width);
 /// The text followed by spaces up to `width` columns.
 std::string pad_right(std::string text, int width);
 
+/// One word of a shell.
+std::string in_single_quotes(const std::string& text);
+
 /// The text in lines of at most `width` columns, broken at spaces where possible, at characters
 /// where not; its own line feeds stay. Never empty.
 std::vector<std::string> wrap(std::string_view text, int width);

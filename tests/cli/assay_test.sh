@@ -146,6 +146,10 @@ test_ledger_alarm_is_1() {
   contains out 'The relative difference from the reference is -1'
   expect 0 explain
   contains out 'The ledger n.ledger raises an alarm for nights/off. The relative difference from the reference is -1'
+  lacks out 'Nothing.'
+  contains out "echo 'begin \"nights/off\"' >> 'n.ledger'"
+  echo 'begin "nights/off"' >>n.ledger
+  expect 0 run nights.yaml --alpha 1e-9 --seed 11 --ledger n.ledger --quiet
 }
 
 test_ledger_keeps_nights_and_refuses_changed_lines() {
