@@ -25,7 +25,8 @@ void require_different_data(const Question& question, const Claim& claim) {
   }
   refuse(claim.left.where,
          "both sides are read from `{}`: its rows belong together and are not independent samples; "
-         "record the difference as another column and claim that its mean is 0",
+         "draw the rows of each side anew, in two files; for means, a column of differences also "
+         "serves, whose mean is claimed to be 0",
          first);
 }
 
