@@ -52,7 +52,8 @@ Budget read_short_budget(const Value& value) {
   const std::string& text = value.text();
   try {
     if (!text.ends_with('s')) return {count_from(value, "`budget`", 1), {}};
-    const Value seconds = Value::scalar(text.substr(0, text.size() - 1), value.where());
+    const std::string number = boost::trim_right_copy(text.substr(0, text.size() - 1));
+    const Value seconds = Value::scalar(number, value.where());
     return {{}, positive_number(seconds, "the seconds of `budget`")};
   } catch (const InputError&) {
     refuse(value.where(),

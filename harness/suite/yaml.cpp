@@ -218,7 +218,10 @@ class DocumentBuilder final : public YAML::EventHandler {
     const Value::Member* before = frame.members.empty() ? nullptr : &frame.members.back();
     const bool cut = before && before->second.kind() == Value::Kind::scalar &&
                      open_brackets(before->second.text()) > 0 && open_brackets(*frame.key) < 0;
-    if (!cut) refuse(frame.key_place, "`{}` has no value", *frame.key);
+    const bool joined = frame.key->find(':') != std::string::npos;
+    if (!cut)
+      refuse(frame.key_place, "`{}` has no value{}", *frame.key,
+             joined ? "; put a blank after its colon" : "");
     refuse(frame.key_place,
            "inside {{…}} a comma ends the value of `{0}`; quote the {0}: `{0}: \"{1}, {2}\"`",
            before->first, before->second.text(), *frame.key);
