@@ -102,17 +102,21 @@ class Lexer {
     return token;
   }
 
-  /// InputError, with its value, for a number that another divides.
-  void refuse_quotient(const Token& number) const {
+  /// The number after a `/` that comes next; 0 without one.
+  double divisor() const {
     Lexer after = *this;
     while (is_blank(after.ahead(0))) ++after.at_;
-    if (after.ahead(0) != '/') return;
+    if (after.ahead(0) != '/') return 0;
     do ++after.at_;
     while (is_blank(after.ahead(0)));
-    const double divisor = scan_number(after.rest()).value;
-    if (divisor == 0) return;
+    return scan_number(after.rest()).value;
+  }
+
+  /// InputError, with its value, for a number that another divides.
+  void refuse_quotient(const Token& number) const {
+    if (divisor() == 0) return;
     refuse(number.where, "a claim has no arithmetic; write the quotient as one number, `{}`",
-           number.number / divisor);
+           number.number / divisor());
   }
 
   Token symbol() {
@@ -143,6 +147,12 @@ class Lexer {
               "the name of a part must follow the `.` at once; a file is read by an estimator of "
               "the plugin `recorded`"},
     };
+    const std::string_view before = text_.substr(0, at_);
+    if (const std::size_t sign = before.find_last_of("=<>");
+        divisor() != 0 && sign != before.npos) {
+      refuse(place(), "a claim has no arithmetic; a factor stands on the right: `{:.6g} * {}`",
+             1 / divisor(), boost::trim_copy(std::string(before.substr(sign + 1))));
+    }
     for (const Habit& habit : habits) {
       if (rest().starts_with(habit.written)) refuse(place(), std::string(habit.advice));
     }
@@ -184,7 +194,9 @@ class Parser {
   Claim claim() {
     Claim claim;
     if (const Token token = lexer_.peek(); token.kind == Kind::number) {
-      refuse(token.where, "a claim begins with a quantity, as in `mean(area) == 0.5`");
+      refuse(token.where,
+             "a claim begins with a quantity, as in `mean(a) < 2 * mean(b)`; a range is `mean(a) "
+             "within 0.05 of 0.45`");
     }
     claim.left = quantity();
     relation(claim);
@@ -330,6 +342,7 @@ class Parser {
          std::initializer_list<std::pair<std::string_view, const char*>>{
              {" E average avg expectation expected ", "; did you mean `mean(…)`?"},
              {" stddev stdev std deviation standard_deviation sd ", "; square it: `variance(…)`"},
+             {" error mse rmse MSE RMSE ", "; it has two parts: `bias(…)` and `variance(…)`"},
              {" median ", "; it is a quantile: `quantile(…, 0.5)`"},
              {" pi PI Pi ", "; write it as a number, 3.141592653589793"},
              {" pdf ", "; did you mean `density`?"},

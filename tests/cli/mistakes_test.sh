@@ -35,7 +35,7 @@ claim: mean(area.red) == analytic|17: `area` has no part `red`; it has `irradian
 claim: mean(area) == 48%|28: a value has no per cent: write `0.48`, or a margin, as in `mean(a) within 48% of 0.5`
 claim: area == 0.48|12: expected a quantity, as in `mean(area)`, found `area`
 claim: mean(area)|22: the claim is not complete: add `== analytic`, `<= 0.5`, …
-claim: 0.4 < mean(area) < 0.5|12: a claim begins with a quantity, as in `mean(area) == 0.5`
+claim: 0.4 < mean(area) < 0.5|12: a claim begins with a quantity, as in `mean(a) < 2 * mean(b)`; a range is `mean(a) within 0.05 of 0.45`
 claim: distribution(area) == gaussian(0, 1)|34: a quantity cannot be compared with `gaussian`; did you mean `normal(0, 1)`?
 claim: mean(area) within 5 of analytic|30: the margin 5 is larger than the reference, 0.481: for 5 per cent write `5%`
 {claim: quantile(area, 0.5) == 0.4}|28: inside {…} a comma ends the value of `claim`; quote the claim: `claim: "quantile(area, 0.5) == 0.4"`
@@ -195,6 +195,8 @@ test_mistakes_in_a_check_say_what_to_write() {
     check "$claim" --estimator area=luminaire/area
   answers 2 'the plugin needs a name, which the claim uses: `--estimator x=recorded,file=one.txt`' \
     check 'mean(x) == 1' --estimator recorded,file=one.txt
+  answers 2 "\`none.txt\`: it cannot be read: No such file or directory; it was sought in \`$PWD\`" \
+    check 'mean(x) == 1' --estimator x=recorded,file=none.txt
   expect 1 check "$claim" --detect 1e-5%
   contains out 'this claim would take about'
   expect 1 check 'mean(x) == 1' --estimator x=recorded,file=one.txt
