@@ -224,8 +224,7 @@ std::shared_ptr<const Setup> prepare(Parameters& parameters) {
     parameters.require(!parameters.given(of_run), of_run,
                        "is for moments of a run, which have no rows");
   }
-  parameters.require(parameters.given("file"), "file",
-                     "is missing; give it, or `run` and `estimator`");
+  parameters.require(parameters.given("file"), "file", "is needed, or `run` and `estimator`");
   const PictureRequest request = picture_request(parameters);
   parameters.string("column");
   if (recorded::names_pictures(request.pattern)) return prepare_pictures(parameters, request);

@@ -195,8 +195,8 @@ test_mistakes_in_a_check_say_what_to_write() {
     check "$claim" --estimator area=luminaire/area
   answers 2 'the plugin needs a name, which the claim uses: `--estimator x=recorded,file=one.txt`' \
     check 'mean(x) == 1' --estimator recorded,file=one.txt
-  answers 2 "\`none.txt\`: it cannot be read: No such file or directory; it was sought in \`$PWD\`" \
-    check 'mean(x) == 1' --estimator x=recorded,file=none.txt
+  answers 2 "\`absent.txt\`: it cannot be read: No such file or directory; it was sought in \`$PWD\`" \
+    check 'mean(x) == 1' --estimator x=recorded,file=absent.txt
   expect 1 check "$claim" --detect 1e-5%
   contains out 'this claim would take about'
   expect 1 check 'mean(x) == 1' --estimator x=recorded,file=one.txt

@@ -72,7 +72,7 @@ TEST(Describe, OffersThePartsThatClaimsCanName) {
     if (setup == nullptr) {
       // Some mutants cannot live in the scene that their original has by default; data need a file.
       EXPECT_THAT(refused, AnyOf(HasSubstr("never end"), HasSubstr("focal plane"),
-                                 HasSubstr("give it, or `run`")))
+                                 HasSubstr("is needed, or `run`")))
           << entry.information.name;
       continue;
     }

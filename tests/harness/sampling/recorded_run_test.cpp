@@ -241,7 +241,7 @@ TEST_F(RecordedRunTest, NamesWhatIsWrongWithTheRunOrTheEstimator) {
   EXPECT_THAT(refused_as("run: run.json, estimator: normal, file: x.txt"),
               HasSubstr("give it or `run`, not both"));
   EXPECT_THAT(refused_as("file: x.txt, estimator: normal"), HasSubstr("estimator"));
-  EXPECT_THAT(refused_as("column: x"), HasSubstr("give it, or `run` and `estimator`"));
+  EXPECT_THAT(refused_as("column: x"), HasSubstr("is needed, or `run` and `estimator`"));
   place_.write("cut.json", "{\"schema\": 1");
   EXPECT_THAT(refused_as("run: cut.json"), HasSubstr("is no record of a run"));
 }
