@@ -27,7 +27,7 @@ using reports::Verdict;
 /// The command that repeats one observation; "" of a claim in a test binary.
 std::string replay_line(const TestOutcome& outcome, std::uint64_t observation) {
   if (outcome.question.test->where.file.empty()) return "";
-  return fmt::format("; `assay replay {} {}` draws it again",
+  return fmt::format("; until the next run from here, `assay replay {} {}` draws it again",
                      shell_quoted(outcome.question.test->id), observation);
 }
 
