@@ -230,12 +230,15 @@ testing::AssertionResult judged(const std::string& claim, const std::vector<Part
 
 }  // namespace
 
-Source primary(const std::string& name, std::function<double(Stream&)> estimate) {
-  return {name, averaging({.name = "value"}, std::move(estimate)), true};
+Source primary(const std::string& name, std::function<double(Stream&)> estimate, double low,
+               double high) {
+  const Channel channel{.name = "value", .low = low, .high = high};
+  return {name, averaging(channel, std::move(estimate)), true};
 }
 
 Source secondary(const std::string& name, std::size_t channels,
-                 std::function<void(Stream&, std::span<double>)> estimate) {
+                 std::function<void(Stream&, std::span<double>)> estimate, double low,
+                 double high) {
   SetupParts parts{
       .make = estimating([estimate = std::move(estimate)](Stream& random, std::uint64_t primaries,
                                                           std::span<double> out, Cost& cost) {
@@ -243,7 +246,8 @@ Source secondary(const std::string& name, std::size_t channels,
         cost.samples += primaries;
       })};
   for (std::size_t i = 1; i <= channels; ++i) {
-    parts.channels.push_back({.name = channels == 1 ? "value" : "value" + std::to_string(i)});
+    parts.channels.push_back(
+        {.name = channels == 1 ? "value" : "value" + std::to_string(i), .low = low, .high = high});
   }
   return {name, setup_of(std::move(parts)), false};
 }

@@ -14,6 +14,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -39,13 +40,16 @@ struct Source {
 };
 
 /// A source of primaries: each call draws one. Observations are means of as many as the pilot asks
-/// for.
-Source primary(const std::string& name, std::function<double(Stream&)> estimate);
+/// for. No value lies outside the range, as in `primary("mine", cube, 0, 1)`. Without a range,
+/// values too rare to be drawn may move a mean.
+Source primary(const std::string& name, std::function<double(Stream&)> estimate,
+               double low = -HUGE_VAL, double high = HUGE_VAL);
 
 /// A source of secondaries: each call draws one, with this number of channels. They are named
 /// value, or value1, value2, …
 Source secondary(const std::string& name, std::size_t channels,
-                 std::function<void(Stream&, std::span<double>)> estimate);
+                 std::function<void(Stream&, std::span<double>)> estimate, double low = -HUGE_VAL,
+                 double high = HUGE_VAL);
 
 /// A key of the test, as in a suite: `detect` and `allow` are "0.5%" or "0.002". `secondaries` is
 /// the number of observations.

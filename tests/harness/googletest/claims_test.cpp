@@ -24,7 +24,7 @@ std::string message(const std::string& claim, const std::vector<Part>& parts) {
 TEST(Claims, OfACallableHoldWhereTheyAreTrue) {
   EXPECT_CLAIM("mean(mine) == 0.25", primary("mine", cube), detect("5%"));
   EXPECT_CLAIM("mean(both) == 0.5", secondary("both", 2, sides));
-  EXPECT_CLAIM("mean(both.value2) == mean(mine)", secondary("both", 2, sides),
+  EXPECT_CLAIM("mean(both.value2) == mean(mine)", secondary("both", 2, sides, 0, 1),
                primary("mine", [](Stream& random) { return random.uniform(); }));
 }
 
@@ -32,6 +32,9 @@ TEST(Claims, SayWhatWasFoundWhereTheyAreNot) {
   const std::string said = message("mean(mine) == 0.3", {primary("mine", cube)});
   EXPECT_THAT(said, testing::StartsWith("fails: fail: relative difference from the reference"));
   EXPECT_THAT(said, HasSubstr("null hypothesis: mean(mine) = 0.3"));
+  EXPECT_THAT(said, HasSubstr("off may explain it; declare a range"));
+  EXPECT_THAT(message("mean(mine) == 0.3", {primary("mine", cube, 0, 1)}),
+              testing::Not(HasSubstr("declare a range")));
   EXPECT_THAT(said, testing::ContainsRegex("\nreplay: [^\n]+( \\\\\n  *)?--gtest_filter=Claims"));
 }
 
