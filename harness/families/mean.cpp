@@ -557,11 +557,10 @@ class MeanTheta : public Theta {
       const double rarer = std::floor(static_cast<double>(std::max<std::uint64_t>(3, seen)) / 3);
       const double away =
           rarer * std::abs(effect.estimate.value_or(0)) / std::abs(question.factor_of(side));
-      return fmt::format(
-          "values rarer than one in {:.0f}, at least {} away from {}, could also explain this{}",
-          rarer, reports::human(away, 2) + (effect.relative ? " times the mean" : ""),
-          effect.relative ? "it" : "the mean",
-          is_recorded(question.subjects[side]) ? "" : "; declare a range to exclude them");
+      return fmt::format("rare values {} off{} may explain it{}",
+                         reports::human(away, 2) + (effect.relative ? " times the mean" : ""),
+                         effect.relative ? "" : " the mean",
+                         is_recorded(question.subjects[side]) ? "" : "; declare a range");
     }
     return "";
   }

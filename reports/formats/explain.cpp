@@ -62,14 +62,18 @@ std::string explain(const Suite& suite, const Test& test, int width, const Ledge
     if (!part.empty()) text += part + " ";
   }
   text += how_sure(test, words, found);
+  std::vector<Step> next = steps(test);
+  if (!next.empty() && next[0].label == "note") {
+    text += sentence("Note: " + next[0].words) + " ";
+    next.erase(next.begin());
+  }
   const std::string broken = fact_of(words, "assumptions", "Assumptions ");
   if (test.verdict == Verdict::invalid && !broken.empty()) text += broken + " ";
   text += fact_of(words, "observations", "These observations were drawn: ");
   say(text);
   if (is_evidence(test) && test.verdict != Verdict::skipped && suite.alpha > 0) {
-    say(false_alarms(suite.alpha) + " They are counted over all claims of the suite.");
+    say(false_alarms(suite.alpha) + " In such a run a true claim of the suite fails.");
   }
-  std::vector<Step> next = steps(test);
   bool alarms = false;
   for (const LedgerSeries& series : ledger.series) {
     if (!series.alarm || series.test != test.id) continue;

@@ -25,12 +25,22 @@ test_good_suite_is_0() {
   contains out '✓ The claim is as it should be in'
 }
 
-# Five lines have no room for all of the caveat and for how to repeat it.
+# Five lines have no room for a long note and for how to repeat it.
 test_a_fail_says_how_to_repeat_it() {
   write_suite told.yaml "$good" '  - {name: a name that takes a second line of the command, claim: mean(normal) == 3}'
   expect 1 run told.yaml
   contains out 'again: assay run told.yaml'
+  contains out 'times the mean off may explain it; declare a range'
+  lacks out '… (assay explain TEST)'
+  seq 200 | awk '{ s = 16807 * (s + !s) % 2147483647; print s / 2147483647 }' >rows.txt
+  sed -i 's/mean(normal) == 3}/variance(rows) == variance(normal)}/
+    s/^estimators:/&\n  rows: {plugin: recorded, file: rows.txt}/' told.yaml
+  expect 1 run told.yaml
+  contains out 'again: assay run told.yaml'
   contains out '… (assay explain TEST)'
+  expect 0 explain 'second line'
+  contains out 'Note: a row of `rows` is compared with a single primary of `normal`'
+  lacks out 'note:'
 }
 
 test_failing_suite_is_1() {
