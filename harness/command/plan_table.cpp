@@ -141,7 +141,7 @@ Row row_of(const TestOutcome& test, const Pilots& pilots) {
     row.notes.push_back(outlook_text("if it holds", *expected.if_true));
   }
   if (plan.invalid.empty() && expected.if_off) {
-    const char* off = plan.regions[0].proof() ? "if it is just wrong" : "if off by `detect`";
+    const char* off = plan.regions[0].proof() ? "if it is barely wrong" : "if off by `detect`";
     row.notes.push_back(outlook_text(off, *expected.if_off));
   }
   note_gates(plan.gates, row.notes);

@@ -33,8 +33,7 @@ Evidence integral(const Seen& seen) {
       from_probability({.successes = cells.in_cells(counts).back(), .trials = sum(counts)},
                        cells.mass.total - seen.reference().value, cells.tolerance());
   evidence.quantity = fmt::format(
-      "integral of the density ({:.10g} +- {:.1g}) plus the share of draws without a point, minus "
-      "{:g},",
+      "total probability (density {:.10g} +- {:.1g}, plus draws without a point) less {:g}",
       cells.mass.total, cells.tolerance(), seen.reference().value);
   return evidence;
 }

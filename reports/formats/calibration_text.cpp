@@ -45,12 +45,12 @@ std::string rows_of(const CalibrationCell& cell) {
 constexpr const char* legend =
     R"(holds   the claim holds exactly        off  the claim is off by `detect`
 alone   this method forced, in one look, its warnings (gates) ignored
-open    inconclusive        red  with a red gate        n  mean observations
+open    inconclusive      red  an assumption violated      n  mean observations
 by      the method that judges most runs
 errs    the rate of mistakes is at least this. A mistake is a true claim that
         fails; for tost and other proofs, a claim off by `detect` that passes
 !!  mistaken too often for certain
-!   alone mistaken too often for certain, without a red gate
+!   alone mistaken too often for certain, with no assumption violated
 )";
 
 }  // namespace

@@ -39,12 +39,12 @@ bool rests_on_contrary(const Test& test) {
   return is_proof(test) && test.verdict != Verdict::fail && least_excluded(test) != nullptr;
 }
 
-// " after 3 of 8 looks (0.79 if the last were the only one)".
+// ", corrected for 3 of 8 looks (0.79 uncorrected)".
 std::string over_looks(const Test& test, Number Look::*log10_p) {
   if (test.planned_looks.size() < 2 || test.looks.empty() || test.channels.size() > 1) return {};
   const Number at_last = test.looks.back().*log10_p;
   if (!at_last) return {};
-  return fmt::format(" after {} of {} looks ({} if the last were the only one)", test.looks.size(),
+  return fmt::format(", corrected for {} of {} looks ({} uncorrected)", test.looks.size(),
                      test.planned_looks.size(), p_text({}, at_last));
 }
 
@@ -69,7 +69,7 @@ std::string about_the_claim(const Test& test) {
 }
 
 std::string about_the_contrary(const Test& test) {
-  return test.beta ? fmt::format("; a pass needs at most beta, {}", human(test.beta, 3)) : "";
+  return test.beta ? fmt::format("; a pass needs p at most {} (beta)", human(test.beta, 3)) : "";
 }
 
 std::string image_fact(const Test& test) {

@@ -70,9 +70,9 @@ double distance(const LedgerSeries& series) {
 }  // namespace
 
 std::string ledger_title(const Ledger& ledger) {
-  return fmt::format("Ledger {}, budget {} a suite: {} in {}", ledger.file, human(ledger.budget),
+  return fmt::format("Ledger {}: {} in {} (false alarms: at most {} a suite)", ledger.file,
                      counted(static_cast<std::uint64_t>(alarms(ledger)), "alarm", "alarms"),
-                     counted(ledger.series.size(), "series", "series"));
+                     counted(ledger.series.size(), "series", "series"), human(ledger.budget));
 }
 
 std::string series_name(const Ledger& ledger, const LedgerSeries& series) {
@@ -100,7 +100,7 @@ std::string alarm_sentence(const LedgerSeries& series) {
   if (!series.alarm) return {};
   const std::string range = series.moved_from == series.moved_to
                                 ? std::string()
-                                : fmt::format(" (90\u00A0%: {:.16} to {})",
+                                : fmt::format(" (90\u00A0% sure: {:.16} to {})",
                                               minute(series.moved_from), minute(series.moved_to));
   const Effect now = effect_now(series);
   return fmt::format(

@@ -9,7 +9,7 @@
 
 namespace assay::reports {
 
-/// "Ledger nightly.ledger, budget 0.003 a suite: 2 alarms in 57 series".
+/// "Ledger nightly.ledger: 2 alarms in 57 series (false alarms: at most 0.003 a suite)".
 std::string ledger_title(const Ledger&);
 
 /// "luminaire/mean(area) == analytic", with the channel where the test has several.

@@ -166,7 +166,7 @@ test_ledger_keeps_nights_and_refuses_changed_lines() {
   write_suite good.yaml "$good"
   expect 0 run good.yaml --seed 1 --ledger n.ledger --quiet
   expect 0 run good.yaml --seed 2 --ledger n.ledger --quiet
-  contains out 'Ledger n.ledger, budget 0.003 a suite: 0 alarms in 1 series'
+  contains out 'Ledger n.ledger: 0 alarms in 1 series (false alarms: at most 0.003 a suite)'
   [ "$(tail -n 1 n.ledger)" = 'end 2' ] || fail 'not two nights'
   cp n.ledger before
   expect 0 run good.yaml --seed 2 --ledger n.ledger --quiet

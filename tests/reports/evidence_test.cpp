@@ -18,7 +18,7 @@ reports::Test proof(Verdict verdict) {
 TEST(Evidence, AProofThatPassedRestsOnThePValueOfTheContrary) {
   EXPECT_EQ(headline_p(proof(Verdict::pass)).text(), "p(contrary) = 2.5e-812");
   EXPECT_EQ(evidence_text(proof(Verdict::pass)),
-            "p(contrary) = 2.5e-812 (F); a pass needs at most beta, 0.01");
+            "p(contrary) = 2.5e-812 (F); a pass needs p at most 0.01 (beta)");
   EXPECT_EQ(exclusion_text(proof(Verdict::pass)),
             "p(claim) = 1 (F, upper); its share of alpha is 0.001");
 }
@@ -50,7 +50,7 @@ TEST(Evidence, AnAlarmRestsOnThePValueOfTheClaim) {
   test.detect = 0.5;
   EXPECT_EQ(headline_p(test).text(), "p = 1");
   EXPECT_EQ(exclusion_text(test),
-            "p = 2.5e-812 if the error is 0.5; a pass needs at most beta, 0.01");
+            "p = 2.5e-812 if the error is 0.5; a pass needs p at most 0.01 (beta)");
 }
 
 TEST(Evidence, WhatUnderflowedAfterHolmIsWrittenFromItsLogarithm) {

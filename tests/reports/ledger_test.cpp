@@ -18,7 +18,7 @@ TEST(LedgerText, AMoveThatNeedNotHaveHappenedIsNotNamed) {
   EXPECT_THAT(
       alarm_sentence(series),
       HasSubstr("is +0.1\u00A0% (95\u00A0% interval: +0.0467\u00A0% to +0.153\u00A0%). It may "
-                "have been so from the first night on (90\u00A0%: 2026-11-09 02:00 to"));
+                "have been so from the first night on (90\u00A0% sure: 2026-11-09 02:00 to"));
   EXPECT_EQ(changes(series), "");
 }
 

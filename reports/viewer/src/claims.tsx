@@ -285,7 +285,7 @@ export function Claims({ suites, state, change }: { suites: Suite[]; state: Stat
         <span>result</span>
         <span>claim</span>
         <span>measured, plausible range</span>
-        <span>{caught && <>1 is what must be caught<Axis /></>}</span>
+        <span>{caught && <>1: the error that must be caught<Axis /></>}</span>
       </div>
       {suites.map((suite) => (
         <SuiteClaims key={`${suite.name} ${suite.file} ${state.show}`} suite={suite} state={state} toggle={toggle} few={few} />
