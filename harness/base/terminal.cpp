@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <mutex>
 
+#include "reports/words/number.h"
 #include "reports/words/text.h"
 
 namespace assay::harness {
@@ -94,8 +95,13 @@ std::string progress_text(const Phase& phase, std::uint64_t done) {
 }
 
 std::string ProgressLines::text(std::uint64_t done) const {
-  const double seconds = std::chrono::duration<double>(shown_ - first_).count();
-  return fmt::format("{}  {:.0f} s", progress_text(phase_, done), seconds);
+  const std::chrono::duration<double> all = shown_ - first_, here = shown_ - began_;
+  const double part = fraction(phase_, done);
+  std::string left;
+  if (phase_.unit.empty() && part > 0)  // claims take unequal times
+    left = fmt::format(" ({} left)", reports::duration(here.count() * (1 / part - 1)));
+  return fmt::format("{}{}  {:.0f} s", progress_text(phase_, done), reports::plain_spaces(left),
+                     all.count());
 }
 
 void ProgressLines::advance(std::uint64_t done) {
@@ -105,7 +111,7 @@ void ProgressLines::advance(std::uint64_t done) {
 }
 
 void ProgressBar::begin(const Phase& phase) {
-  phase_ = phase;
+  ProgressLines::begin(phase);
   draw(0);
 }
 

@@ -34,22 +34,23 @@ std::string in_lines(const std::string& sentence);
 
 using Clock = std::function<std::chrono::steady_clock::time_point()>;
 
-/// A line a minute, for what does not redraw lines: "assay: pilot  43 %  60 s".
+/// A line a minute, for what does not redraw lines: "assay: pilot  43 % (80 s left)  60 s".
 class ProgressLines : public Progress {
  public:
   explicit ProgressLines(std::ostream& out, Clock now = std::chrono::steady_clock::now)
       : out_(out), now_(std::move(now)), first_(now_()), shown_(first_) {}
-  void begin(const Phase& phase) override { phase_ = phase; }
+  void begin(const Phase& phase) override { phase_ = phase, began_ = now_(); }
   void advance(std::uint64_t done) override;
 
  protected:
-  /// "pilot  43 %  60 s", with the time shown of all phases.
+  /// "pilot  43 % (80 s left)  60 s", with the time left of this phase and the time of all.
   std::string text(std::uint64_t done) const;
 
   std::ostream& out_;
   Clock now_;
   Phase phase_ = {};
   std::chrono::steady_clock::time_point first_;  ///< start of all phases
+  std::chrono::steady_clock::time_point began_;  ///< start of this phase
   std::chrono::steady_clock::time_point shown_;
 };
 

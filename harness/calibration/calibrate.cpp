@@ -489,7 +489,7 @@ reports::Calibration calibration(const CalibrateArguments& arguments, Progress& 
   }
   refuse_twice("METHOD", arguments.methods);
   std::vector<CalibrationCase> all;
-  progress.begin({"calibration", laws.size() * arguments.runs, "runs"});
+  progress.begin({"calibration", laws.size() * arguments.runs});
   for (std::size_t i = 0; i < laws.size(); ++i) {
     const CalibrationBench bench(laws[i], arguments);
     if (bench.cases.empty()) continue;

@@ -346,7 +346,8 @@ procedure, with pilot, gates and looks, and for the method alone. Exit code 1:
 some cell errs too often.
 
 Examples:
-  assay calibrate
+  assay calibrate t --runs 200    within a minute
+  assay calibrate                 all methods: more than an hour
   assay calibrate F chi-square --law exponential --alpha 0.01 --runs 20000 \
       --report html=F.html
   assay calibrate t --law 'lognormal(0, 2)' --samples 200

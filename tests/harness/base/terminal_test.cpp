@@ -102,7 +102,7 @@ TEST(ProgressBar, GivesWayToASentence) {
   EXPECT_EQ(other.str(), "assay: it is slow\n");
   shown.hands.time += 1s;
   shown.bar.advance(50);
-  EXPECT_THAT(shown.last(), HasSubstr("pilot  50 %"));
+  EXPECT_THAT(shown.last(), HasSubstr("pilot  50 % (1 s left)  1 s"));
   shown.bar.end();
   const std::string ended = shown.out.str();
   say_beside_progress("it is slow", other);
