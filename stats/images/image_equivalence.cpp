@@ -125,7 +125,10 @@ void add_row(DistanceSums& sums, const ImagePair& pair, ElementRange range,
       const double difference = a->mean[i] - b->mean[i];
       (*differences)[i] = difference;
       (*back)[i] = -difference;
-      sums.whole[0] += difference * difference - a->squared_error[i] - b->squared_error[i];
+      const double square = difference * difference;
+      sums.powers[0] += square;
+      sums.powers[1] += square * square;
+      sums.whole[0] += square - a->squared_error[i] - b->squared_error[i];
       sums.whole[1] += b->mean[i] * b->mean[i] - b->squared_error[i];
     }
     add_without(sums.without_a, pair.a, block, a->mean, *differences, b->mean);
@@ -142,6 +145,7 @@ void add(std::vector<Terms>& to, const std::vector<Terms>& others) {
 }
 void add(DistanceSums& to, const DistanceSums& other) {
   add(to.whole, other.whole);
+  add(to.powers, other.powers);
   add(to.without_a, other.without_a);
   add(to.without_b, other.without_b);
 }
@@ -213,7 +217,7 @@ ImageDistance RowDistance::distance() const {
   for (const double sum : sums_.whole) {
     if (!std::isfinite(sum)) check::fail({function_name, "sum over the image"}, sum, "finite");
   }
-  const auto& [whole, without_a, without_b] = sums_;
+  const auto& [whole, without_a, without_b, powers] = sums_;
   const std::size_t fewest =
       without_b.empty() ? without_a.size() : std::min(without_a.size(), without_b.size());
   // The norm is of b alone.
@@ -222,7 +226,8 @@ ImageDistance RowDistance::distance() const {
           .bias_variance = covariance(without_a, 0, 0) + covariance(without_b, 0, 0),
           .norm_variance = covariance(without_b, 1, 1),
           .covariance = covariance(without_b, 0, 1),
-          .degrees = static_cast<double>(fewest - 1)};
+          .degrees = static_cast<double>(fewest - 1),
+          .elements = powers[0] * powers[0] / powers[1]};
 }
 
 ImageDistance image_distance(const ImagePair& pair, const ForEach& for_each) {
@@ -290,6 +295,8 @@ TestResult squared_margin_test(const ImageDistance& distance, double squared_mar
 namespace {
 
 constexpr double never = std::numeric_limits<double>::lowest();
+// As a sum of squares rests on at least (assumption_gates.h).
+constexpr double least_elements = 32;
 
 // The natural logarithm of the p-value of "one of the means is `margin` off or more".
 double log_p_of_means(const ThetaOfImages& theta, double margin) {
@@ -315,6 +322,7 @@ TestResult test_of_squares(const ThetaOfImages& theta, double margin) {
   TestResult result = at(theta.of_elements, margin + theta.hidden);
   if (theta.share > 0)
     result.log_p_upper = std::min(0.0, result.log_p_upper - std::log(theta.share));
+  if (theta.of_elements.elements < least_elements) result.log_p_upper = 0;
   result.log_p_lower = std::max(at(at_least_zero, least).log_p_lower, log_p_of_means(theta, least));
   return result;
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <limits>
 #include <vector>
 
 #include "stats/basics/for_each.h"
@@ -25,6 +26,8 @@ struct ImageDistance {
   double norm_variance = 0;
   double covariance = 0;
   double degrees = 0;
+  // The number of elements on which U rests: (sum d^2)^2 / sum d^4, d = mean a - mean b.
+  double elements = std::numeric_limits<double>::infinity();
 };
 
 // Internal: sums over elements of the terms of U and N. They are whole, and without each replicate
@@ -34,6 +37,7 @@ struct DistanceSums {
   Terms whole = {};
   std::vector<Terms> without_a = {};
   std::vector<Terms> without_b = {};
+  Terms powers = {};  // d^2 and d^4.
 };
 
 // Room for the moments of elements of either side, or none.
@@ -115,7 +119,9 @@ inline constexpr double share_of_distance = 0.25;
 // Null hypothesis: theta = margin. A hidden bias may be part of theta, or make up theta. An
 // estimate below 0 counts as 0, since no bias is smaller. Noise that all elements share enters the
 // squared distance squared, so the jackknife misses it where it cancels a bias: the means decide as
-// well. The upper p-value is over the share. Asymptotic. Throws as squared_margin_test.
+// well. The upper p-value is over the share. It is 1 where U rests on fewer than 32 elements: rare
+// light that one side missed in few pixels is a matter of places, whose neighbours tell of it.
+// Asymptotic. Throws as squared_margin_test.
 TestResult theta_test(const ThetaOfImages& theta, double margin);
 
 // Values of theta that theta_test does not reject, but for places at 0. They are found by the
