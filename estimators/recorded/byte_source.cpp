@@ -40,7 +40,7 @@ bool is_read_once(const std::string& file) {
   std::error_code ignored;
   const auto status = std::filesystem::status(file, ignored);
   if (!std::filesystem::exists(status)) {
-    return file.starts_with("/dev/") || file.starts_with("/proc/");
+    return file.starts_with("/dev/fd/") || file.starts_with("/proc/");
   }
   return !std::filesystem::is_regular_file(status) && !std::filesystem::is_directory(status);
 }
