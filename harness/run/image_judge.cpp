@@ -198,9 +198,9 @@ std::string others_at(const DrawnTest& test, const PlaceEffect& place) {
     if (!is_clear) continue;
     const reports::Effect effect{.relative = base != 0};
     const double unit = effect.relative ? std::abs(base) : 1;
-    texts.push_back(names[c] + (texts.empty() ? " differs by " : " by ") +
-                    reports::theta_text(difference / unit, effect) +
-                    (c == mine ? " unweighted" : ""));
+    texts.push_back(
+        (texts.empty() ? "unweighted " + names[c] + " differs by " : names[c] + " by ") +
+        reports::theta_text(difference / unit, effect));
   }
   return fmt::format("{}", fmt::join(texts, ", "));
 }
@@ -212,14 +212,16 @@ std::string means_where_it_differs(const DrawnTest& test) {
   const std::string& seen = channels[0].image->seen;
   if (fails && !seen.empty()) return "; there " + seen;
   std::string constants;
-  if (const std::vector<stats::UnseenElement>& unseen = channels[0].image->unseen;
-      !unseen.empty()) {
+  std::vector<stats::UnseenElement> unseen = channels[0].image->family.unseen;
+  std::erase_if(unseen, &stats::UnseenElement::certain);
+  if (!unseen.empty()) {
+    const Question& question = test.outcome.question;
     const bool one = unseen.size() == 1;
     constants = fmt::format(
-        "; {}{} value{} from the reference, {} {}: rare light may be unseen there", unseen.size(),
+        "; {}{} value{} from {}, {} {}: rare light may be unseen there", unseen.size(),
         fails ? " other" : "", one ? " never varies and differs" : "s never vary and differ",
-        one ? "at" : "the first at",
-        element_place(*test.outcome.question.subjects[0].image, unseen[0].element));
+        question.of_two() ? "the other side's" : "the reference", one ? "at" : "the first at",
+        element_place(*question.subjects[0].image, unseen[0].element));
   }
   if (!fails || !is_told_by_place(test.outcome, channels[0])) return constants;
   const std::optional<PlaceEffect> effect = effect_at_place(test);
