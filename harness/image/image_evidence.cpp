@@ -93,8 +93,7 @@ void require_independent(const ImageTest& test, const ImagePair& pair) {
   test.require_independent(stats::image_dependence(pair.pair(), on_all_threads));
 }
 
-PictureLook look_at(const Question& question, const ImageTest& test, ImagePair pair,
-                    std::vector<stats::UnseenElement>& unseen) {
+PictureLook look_at(const Question& question, const ImageTest& test, ImagePair pair) {
   const auto [fewest, most] = pair.replicates();
   stats::check::replicates("image", fewest);
   require_independent(test, pair);
@@ -111,18 +110,17 @@ PictureLook look_at(const Question& question, const ImageTest& test, ImagePair p
   const stats::PyramidOptions options{
       .z = look.z,
       .for_each = on_all_threads,
-      .constants_decide = of_two || question.is().of_pairs || !has_noise};
+      .constants_decide = of_two || question.is().of_pairs || !has_noise,
+      .unseen = std::move(constants.unseen)};
   look.family = stats::image_pyramid(pair.pair(), options);
-  unseen = std::move(constants.unseen);
-  for (const stats::UnseenElement& element : unseen) look.z[element.element] = z_of(element);
+  for (const stats::UnseenElement& each : look.family.unseen) look.z[each.element] = each.z();
   return look;
 }
 
 /// Pictures that were looked at while reading declare neither rounding nor range. So an element of
 /// them that never varied stays as it is.
-PictureLook look_of(const Seen& seen, const ImageTest& test,
-                    std::vector<stats::UnseenElement>& unseen) {
-  if (test.look == nullptr) return look_at(seen.question, test, ImagePair(seen), unseen);
+PictureLook look_of(const Seen& seen, const ImageTest& test) {
+  if (test.look == nullptr) return look_at(seen.question, test, ImagePair(seen));
   if (test.require_independent) test.require_independent(test.look->dependence);
   return *test.look;
 }
@@ -292,13 +290,12 @@ ChannelEvidence evidence_of_images(const Seen& seen, const ImageTest& test) {
   const bool relative = question.theta->is_relative(question, 0);
   const stats::ImageExtent extent = extent_of(*question.subjects[0].image);
   ImageOutcome outcome;
-  PictureLook look = look_of(seen, test, outcome.unseen);
+  PictureLook look = look_of(seen, test);
   const stats::ImageDistance distance = in_units_of_margin(look.distance, extent, relative);
   outcome.replicates = look.pictures;
   outcome.family = std::move(look.family);
   outcome.z = std::move(look.z);
   const double share = share_of_distance(question);
-  stats::add_unseen(outcome.unseen, extent, outcome.family);
   stats::leave_share(outcome.family, share);
   stats::decide(outcome.family);
   note_errors(look.means, relative, (1 - share) * test.share.alpha, test.share.beta, outcome);

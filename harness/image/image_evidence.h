@@ -70,7 +70,6 @@ struct ImageTest {
 
 struct ImageOutcome {
   stats::ImageFamily family = {};
-  std::vector<stats::UnseenElement> unseen = {};
   std::vector<double> z = {};  ///< For every element: Welch's, or of the bound on the unseen.
   std::size_t replicates = 0;  ///< The larger side's.
   std::string seen = {};       ///< What differs at the place and on which side, of laws.

@@ -45,8 +45,8 @@ reports::Image image_of(const ImageOutcome& outcome, const ImageShape& shape) {
                        .components = shape.components,
                        .replicates = outcome.replicates,
                        .tested = family.tested,
-                       .constant = family.equal_constants - outcome.unseen.size(),
-                       .unseen = outcome.unseen.size()};
+                       .constant = family.equal_constants,
+                       .unseen = family.unseen.size()};
   if (family.groups.empty()) return image;
   image.winner = finding_of(family.winner, shape, family.weights);
   for (const stats::ImageFinding& group : family.groups) {

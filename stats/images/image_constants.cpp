@@ -28,23 +28,6 @@ struct Missing : ConstantSample {
   }
 };
 
-constexpr double unseen_share = 0.02;
-
-// The clearest of the elements that never varied, with those that are as clear.
-ImageFinding finding_of(std::span<const UnseenElement> unseen, const ImageExtent& extent) {
-  const UnseenElement& least = *std::ranges::min_element(unseen, {}, &UnseenElement::log_p);
-  std::vector<std::size_t> alike;
-  for (const UnseenElement& each : unseen) {
-    if (each.log_p == least.log_p && each.sign == least.sign) alike.push_back(each.element);
-  }
-  ImageFinding finding = certain_finding(extent, alike, least.sign);
-  finding.log_p = least.log_p;
-  finding.z = z_of(least);
-  const double elements = static_cast<double>(extent.elements());
-  finding.adjusted_log_p = std::min(0.0, least.log_p + std::log(elements / unseen_share));
-  return finding;
-}
-
 class ScannedSide {
  public:
   explicit ScannedSide(SettledSide side) : side_(std::move(side)) {}
@@ -148,17 +131,6 @@ Declarations of_differences(Declarations one, const Declarations& other,
   return one;
 }
 
-double z_of(const UnseenElement& unseen) {
-  if (unseen.log_p == std::numeric_limits<double>::lowest()) return unseen.sign * certain_z;
-  return unseen.sign * normal_quantile({Tail::upper, unseen.log_p - std::log(2.0)});
-}
-
-void add_unseen(std::span<const UnseenElement> unseen, const ImageExtent& extent,
-                ImageFamily& family) {
-  leave_share(family, unseen_share);
-  if (!unseen.empty()) family.groups.push_back(finding_of(unseen, extent));
-}
-
 ImageConstants settle_constants(SettledSide declared, std::vector<double>& reference,
                                 std::vector<double>& error, bool of_pairs, ChangedImages& changed) {
   ImageConstants constants;
@@ -169,7 +141,7 @@ ImageConstants settle_constants(SettledSide declared, std::vector<double>& refer
     const Reference expected{reference[i], error.empty() ? 0 : error[i]};
     const bool differs =
         std::abs(constant - expected.value) > side.declared(i).error(expected.value);
-    if (differs && of_pairs) continue;  // It fails, as of two images.
+    if (differs && of_pairs) continue;
     ++constants.count;
     if (side.was_rounded()) side.settle(i, constant);
     if (differs) {

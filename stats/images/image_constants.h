@@ -29,23 +29,6 @@ using Declarations = std::vector<DeclaredValues>;
 Declarations of_differences(Declarations one, const Declarations& other,
                             std::span<const float> image);
 
-// An element that was the same in every replicate and differs from its reference, or the other
-// image's mean, by more than rounding. Unseen values may make up the difference. Without a declared
-// range they are taken to be as large as the values around it, if all of these elements vary. Else
-// they are as large as all values of the image.
-struct UnseenElement {
-  std::size_t element = 0;
-  double sign = 0;  // Sign of constant - reference.
-  double log_p = 0;
-};
-
-// The normal z of its p-value, with the difference's sign.
-double z_of(const UnseenElement& unseen);
-
-// Adds the elements that never varied to a family of groups, at 2 % of its level. Decide after it.
-void add_unseen(std::span<const UnseenElement> unseen, const ImageExtent& extent,
-                ImageFamily& family);
-
 struct ImageConstants {
   std::vector<UnseenElement> unseen = {};  // They are tested by their ranges.
   std::size_t count = 0;                   // Elements in which nothing varied on either side.
@@ -59,15 +42,17 @@ struct SettledSide {
 using ChangedImages = std::vector<std::vector<float>>;
 
 // Gives elements that did not vary one value. Such an element is tested in sums with its
-// neighbours. By itself it is held against its range, in `unseen`. Constants that differ by
-// rounding only are equal. A reference whose errors are all 0 afterwards has none. Differences of
-// pairs that differ from the reference without any spread are left as they are.
+// neighbours. By itself it is held against its range, in `unseen`. Without a declared range unseen
+// values are taken to be as large as the values around it, if all of these elements vary. Else they
+// are as large as all values of the image. Constants that differ by rounding only are equal. A
+// reference whose errors are all 0 afterwards has none. Differences of pairs that differ from the
+// reference without any spread are left to image_pyramid.
 ImageConstants settle_constants(SettledSide side, std::vector<double>& reference,
                                 std::vector<double>& error, bool of_pairs, ChangedImages& changed);
 
-// The same of two images. If one of them alone varied, its standard error tests the other's
-// constant, provided that the other declares a range. Without a range Welch's test takes the values
-// seen.
+// The same of two images, whose different constants are left to image_pyramid. If one of them alone
+// varied, its standard error tests the other's constant, provided that the other declares a range.
+// Without a range Welch's test takes the values seen.
 ImageConstants settle_constants(SettledSide first, SettledSide second, ChangedImages& changed);
 
 }  // namespace assay::stats

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <iterator>
 #include <limits>
+#include <numbers>
 
 #include "stats/tails/tails.h"
 
@@ -192,27 +193,35 @@ void decide(ImageFamily& family) {
   family.winner.adjusted_log_p = family.log_p;
 }
 
-ImageFinding certain_finding(const ImageExtent& extent, std::span<const std::size_t> elements,
-                             double sign) {
-  const std::size_t channel = elements[0] % extent.channels;
-  const std::size_t row = elements[0] / extent.row();
-  std::size_t left = extent.width, right = 0, top = row, bottom = row;
-  for (const std::size_t element : elements) {
-    if (element % extent.channels != channel) continue;
-    const std::size_t x = element % extent.row() / extent.channels;
-    const std::size_t y = element / extent.row();
+double UnseenElement::z() const {
+  if (certain()) return sign * certain_z;
+  return sign * normal_quantile({Tail::upper, log_p - std::numbers::ln2});
+}
+
+void add_unseen(const ImageExtent& extent, ImageFamily& family) {
+  constexpr double share = 0.02;
+  leave_share(family, share);
+  if (family.unseen.empty()) return;
+  const UnseenElement& least = *std::ranges::min_element(family.unseen, {}, &UnseenElement::log_p);
+  const std::size_t channel = least.element % extent.channels;
+  std::size_t left = extent.width, right = 0, top = extent.height, bottom = 0;
+  for (const UnseenElement& each : family.unseen) {
+    if (each.log_p != least.log_p || each.sign != least.sign) continue;
+    if (each.element % extent.channels != channel) continue;
+    const std::size_t x = each.element % extent.row() / extent.channels;
+    const std::size_t y = each.element / extent.row();
     left = std::min(left, x);
     right = std::max(right, x);
     top = std::min(top, y);
     bottom = std::max(bottom, y);
   }
-  const auto narrow = [](std::size_t n) { return static_cast<std::uint32_t>(n); };
-  constexpr double never = std::numeric_limits<double>::lowest();
-  return {.window = {narrow(left), narrow(top), narrow(right - left + 1), narrow(bottom - top + 1)},
-          .channel = channel,
-          .z = std::copysign(std::numeric_limits<double>::infinity(), sign),
-          .log_p = never,
-          .adjusted_log_p = never};
+  const double elements = static_cast<double>(extent.elements());
+  family.groups.push_back(
+      {.window = {narrow(left), narrow(top), narrow(right + 1 - left), narrow(bottom + 1 - top)},
+       .channel = channel,
+       .z = least.certain() ? least.sign * std::numeric_limits<double>::infinity() : least.z(),
+       .log_p = least.log_p,
+       .adjusted_log_p = std::min(0.0, least.log_p + std::log(elements / share))});
 }
 
 }  // namespace assay::stats

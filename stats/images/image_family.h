@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <span>
 #include <vector>
@@ -114,6 +115,17 @@ struct TypicalCell {
   std::vector<CellNoiseOfMean> noise = {};  // By channel.
 };
 
+// An element that never varied, but differs from a reference or from the other image's constant.
+// Unseen values may make up the difference (stats/means/constant_sample.h).
+struct UnseenElement {
+  std::size_t element = 0;
+  double sign = 0;  // Of the difference.
+  double log_p = 0;
+
+  bool certain() const { return log_p == std::numeric_limits<double>::lowest(); }
+  double z() const;  // The normal z of its p-value, with the difference's sign.
+};
+
 // All looks at a pair of images as one family. Sidak within a group of cells (1967; for two-sided
 // tests of normal sums it holds under any correlation). Bonferroni across groups.
 // P(log_p <= ln a) <= a.
@@ -126,7 +138,7 @@ struct ImageFamily {
   std::vector<ImageFinding> clearest = {};
   std::size_t tested = 0;           // Elements that vary, all channels.
   std::size_t equal_constants = 0;  // Also those that sums alone test.
-  std::size_t different_constants = 0;
+  std::vector<UnseenElement> unseen = {};
   std::vector<float> weights;  // In sums, of the elements that vary or differ.
   // The squared norm of the bias that values can hide which their elements never showed
   // (image_noise.h), in units of the images.
@@ -147,12 +159,11 @@ void decide(ImageFamily& family);
 // Leaves this share of the family's level to other tests: adjusted p-values grow. Decide after it.
 void leave_share(ImageFamily& family, double share);
 
-// Each of different constants has this z: no double is as small as the normal tail beyond.
-inline constexpr double certain_z = 39;
+// Adds `unseen` to the groups, at 2 % of the level: the clearest, with those of its channel that
+// are as clear. Decide after it.
+void add_unseen(const ImageExtent& extent, ImageFamily& family);
 
-// A certain finding: different constants. Its window holds those of these elements that are of the
-// first one's channel.
-ImageFinding certain_finding(const ImageExtent& extent, std::span<const std::size_t> elements,
-                             double sign);
+// Certain differences have this z: no double is as small as the normal tail beyond.
+inline constexpr double certain_z = 39;
 
 }  // namespace assay::stats

@@ -69,9 +69,13 @@ double log_p_constant(const ConstantSample& sample, const Reference& reference) 
 
 double size_about(double constant, const Moments& others) {
   check::at_least({"size_about", "count"}, others.count, 1);
-  const double distance = std::abs(others.mean_less(constant));
-  if (distance == 0) return std::numeric_limits<double>::infinity();
-  return distance + others.m2 / static_cast<double>(others.count) / distance;
+  const double n = static_cast<double>(others.count);
+  const double d = others.mean_less(constant);
+  const double square = others.m2 / n + d * d;
+  if (square == 0) return std::numeric_limits<double>::infinity();
+  const double fourth =
+      others.m4 / n + 4 * d * others.m3 / n + 6 * d * d * others.m2 / n + d * d * d * d;
+  return std::sqrt(fourth / square);
 }
 
 }  // namespace assay::stats

@@ -29,10 +29,9 @@ struct ConstantSample {
 // non-finite value or reference, a negative error, a value outside its range.
 double log_p_constant(const ConstantSample& sample, const Reference& reference);
 
-// How far from a constant c the values x lie that it may have missed, if they are as these others:
-// E (x - c)^2 / |E (x - c)|, so that each counts by its size. Their mean distance, by which unseen
-// values move the mean, is at most that. It is infinite if all others are c, or E x = c. Throws
-// std::domain_error for no values.
+// How far from a constant c the values lie that it may have missed, if they are as these others x:
+// sqrt(E (x - c)^4 / E (x - c)^2), so that rare large ones tell it. Infinite if all others are c.
+// Throws std::domain_error for no values.
 double size_about(double constant, const Moments& others);
 
 }  // namespace assay::stats

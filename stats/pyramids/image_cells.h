@@ -137,14 +137,10 @@ struct CoarseImages {
 struct ElementCounts {
   std::size_t tested = 0;
   std::size_t equal_constants = 0;
-  std::size_t different_constants = 0;
-  std::size_t first_different = 0;  // The first such element, if there is any.
-  double difference = 0;            // Its own.
-  void merge(const ElementCounts& other);
 };
 
 // Input of the test of fine cells: replicates, halves with the weights that each gives the other,
-// and groups of cells. With `constants_decide` constants that differ are a finding.
+// and groups of cells. With `constants_decide` constants that differ are unseen elements.
 struct FineCells {
   const ImagePair& pair;
   const std::array<Half, halves>& half;
@@ -157,6 +153,7 @@ struct FineFindings {
   NoisePyramid noise;
   std::vector<std::vector<Candidates>> tiles;  // A group's candidates, in every tile.
   ElementCounts counts;
+  std::vector<UnseenElement> unseen = {};
   std::vector<float> weights;  // Every element's, averaged over the halves.
   std::span<double> z;         // Every element's alone, by its own noise.
 };

@@ -2,11 +2,14 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <iterator>
+#include <limits>
 #include <numeric>
 #include <optional>
 #include <utility>
 
 #include "stats/basics/vector_copies.h"
+#include "stats/means/constant_sample.h"
 #include "stats/pyramids/image_cells.h"
 
 namespace assay::stats {
@@ -195,12 +198,14 @@ class FineTiles {
   }
 
   const ElementCounts& counts() const { return counts_; }
+  const std::vector<UnseenElement>& unseen() const { return unseen_; }
 
   void take(const Tile& tile) {
     candidates_.assign(cells_.groups.size(), {});
     const std::size_t size = Tile::rows * tile.stride();
     elements_.start(size);
     for (WelchCells& moments : moments_) moments.start(size);
+    for (std::vector<Moments>& values : values_of_tile_) values.clear();
     find_light(tile);
     for (std::size_t h = 0; h < halves; ++h) {
       add_weights(tile, h);
@@ -386,24 +391,26 @@ class FineTiles {
 
   // Tests each element.
   void offer_elements(const Tile& tile) {
-    for_each_element(
-        tile, [&](std::size_t, std::size_t element, std::size_t x, std::size_t y, std::size_t c) {
-          const std::size_t vary = halves_that_vary(element);
-          found_.weights[element] = static_cast<float>(weight_of(element));
-          if (vary < halves) {
-            const bool decides = vary == 0 && cells_.constants_decide;
-            note_constant(element, decides ? difference_of(element) : 0);
-            return;
-          }
-          ++counts_.tested;
-          const CellNoise noise = noise_of(element);
-          add_element(element, x, y, c);
-          const StudentValue value = own_value(noise);
-          found_.z[element] = t_to_z(value);
-          if (!candidates_[0].wants(value.t)) return;
-          const Rectangle place{static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y), 1, 1};
-          candidates_[0].keep({{.window = place, .channel = c, .z = found_.z[element]}, noise});
-        });
+    for_each_element(tile, [&](std::size_t, std::size_t element, std::size_t x, std::size_t y,
+                               std::size_t c) {
+      const std::size_t vary = halves_that_vary(element);
+      found_.weights[element] = static_cast<float>(weight_of(element));
+      if (vary > 0) add_element(element, x, y, c);
+      if (vary < halves) {
+        const bool differs = vary == 0 && cells_.constants_decide && difference_of(element) != 0;
+        if (differs) note_different(tile, element, c);
+        counts_.equal_constants += differs ? 0 : 1;
+        found_.z[element] = differs ? unseen_.back().z() : 0;
+        return;
+      }
+      ++counts_.tested;
+      const CellNoise noise = noise_of(element);
+      const StudentValue value = own_value(noise);
+      found_.z[element] = t_to_z(value);
+      if (!candidates_[0].wants(value.t)) return;
+      const Rectangle place{static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y), 1, 1};
+      candidates_[0].keep({{.window = place, .channel = c, .z = found_.z[element]}, noise});
+    });
   }
 
   // The halves' own moments tell of an element alone.
@@ -527,15 +534,51 @@ class FineTiles {
         cells_.half, [here](const Half& half) { return half.variance_at(here) > 0; }));
   }
 
-  // An element that varied in one half alone is in sums only.
-  void note_constant(std::size_t element, double certain_difference) {
-    if (certain_difference == 0) {
-      ++counts_.equal_constants;
-    } else {
-      counts_.merge(
-          {.different_constants = 1, .first_different = element, .difference = certain_difference});
+  // A side that never varies in the tile has no unseen values, as far as anyone can tell.
+  void note_different(const Tile& tile, std::size_t element, std::size_t channel) {
+    const double difference = difference_of(element);
+    const double value = mean_of(0, element);
+    const double other = value - difference;
+    double log_p = log_p_of_unseen(tile, cells_.pair.a, {0, channel}, value, other);
+    if (cells_.pair.b != nullptr) {
+      log_p = std::max(log_p, log_p_of_unseen(tile, *cells_.pair.b, {1, channel}, other, value));
     }
-    found_.z[element] = certain_difference == 0 ? 0 : std::copysign(certain_z, certain_difference);
+    unseen_.push_back({element, std::copysign(1, difference), log_p});
+  }
+
+  struct OfTile {
+    std::size_t side;
+    std::size_t channel;
+  };
+  // ln p of a constant whose unseen values are as large as those of the tile.
+  double log_p_of_unseen(const Tile& tile, const ImageStack& stack, OfTile of, double value,
+                         double expected) {
+    const Moments& around = values_of_tile(tile, stack, of);
+    if (around.m2 == 0) return std::numeric_limits<double>::lowest();
+    const double size = size_about(value, around);
+    return log_p_constant({value, value - size, value + size, stack.images.size()}, {expected});
+  }
+
+  // All values of the tile's elements, or a single one if no element varies.
+  const Moments& values_of_tile(const Tile& tile, const ImageStack& stack, OfTile of) {
+    std::vector<Moments>& all = values_of_tile_[of.side];
+    all.resize(extent_.channels);
+    Moments& values = all[of.channel];
+    if (values.count > 0) return values;
+    values.add(0);
+    bool varies = false;
+    for_each_element(tile, [&](std::size_t, std::size_t element, auto, auto, std::size_t c) {
+      const std::size_t here = element - cells_.half[0].first;
+      for (const Half& half : cells_.half)
+        varies |= c == of.channel && half.variance[of.side][here] > 0;
+    });
+    if (!varies) return values;
+    values = {};
+    for_each_element(tile, [&](std::size_t, std::size_t element, auto, auto, std::size_t c) {
+      if (c != of.channel) return;
+      for (std::size_t r = 0; r < stack.images.size(); ++r) values.add(*stack.at(r, element));
+    });
+    return values;
   }
 
   void keep_blocks(const Tile& tile, std::size_t y, const double* sums, auto& blocks) const {
@@ -649,6 +692,8 @@ class FineTiles {
   const ImageExtent& extent_;
   std::vector<Candidates> candidates_;  // A tile's, of each group.
   ElementCounts counts_;
+  std::vector<UnseenElement> unseen_;
+  std::array<std::vector<Moments>, sides_of_pair> values_of_tile_;  // By channel, where asked for.
   FineFindings& found_;
   CoarseImages& coarse_;
   std::size_t alternating_;  // Index of the column's sums with alternating signs.
@@ -694,25 +739,20 @@ void offer_fine_cells(const FineCells& cells, RowRange rows, FineFindings& found
                       const ForEach& for_each) {
   const ImageExtent& extent = cells.pair.a.extent;
   std::vector<ElementCounts> counts(tiles_across(extent));
+  std::vector<std::vector<UnseenElement>> unseen(counts.size());
   for_each(counts.size(), [&](std::size_t column) {
     FineTiles tiles(cells, column, found);
     for (std::size_t y = rows.first; y < rows.last; y += Tile::rows) {
       tiles.take({extent, column * Tile::columns, y});
     }
     counts[column] = tiles.counts();
+    unseen[column] = tiles.unseen();
   });
-  for (const ElementCounts& of_column : counts) found.counts.merge(of_column);
-}
-
-void ElementCounts::merge(const ElementCounts& other) {
-  const bool first = different_constants == 0 || other.first_different < first_different;
-  if (other.different_constants > 0 && first) {
-    first_different = other.first_different;
-    difference = other.difference;
+  for (std::size_t column = 0; column < counts.size(); ++column) {
+    found.counts.tested += counts[column].tested;
+    found.counts.equal_constants += counts[column].equal_constants;
+    std::ranges::copy(unseen[column], std::back_inserter(found.unseen));
   }
-  tested += other.tested;
-  equal_constants += other.equal_constants;
-  different_constants += other.different_constants;
 }
 
 FineFindings empty_findings(const ImagePair& pair, std::span<double> z) {
@@ -735,7 +775,6 @@ void add_up_alternating(CoarseImages& coarse) {
   };
   for (CoarseHalf& half : coarse.half) {
     add_up(half.effect);
-    add_up(half.squared_weights);
     for (auto& side : half.images) std::ranges::for_each(side, add_up);
   }
 }

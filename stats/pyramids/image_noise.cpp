@@ -189,16 +189,18 @@ bool NoisePyramid::of_one_law(const Around& near, double toward) const {
   constexpr double errors_of_signs = 6;
   constexpr double errors_of_rates = 2.25;
   if (replicates_[1] == 0) return false;
+  // The root of a count plus 3/8 has the standard error 1/2 (Anscombe 1948).
+  const auto root = [](double count) { return std::sqrt(count + 0.375); };
   return std::ranges::all_of(near.blocks, [&](const Sides& here) {
-    const double more = std::abs(here[0]->noisier() - here[1]->noisier());
-    if (more > errors_of_signs * std::sqrt(here[0]->noisier() + here[1]->noisier())) return false;
+    const double more = root(here[0]->noisier()) - root(here[1]->noisier());
+    if (std::abs(more) > errors_of_signs * std::numbers::sqrt2 / 2) return false;
     std::array<double, sides_of_pair> beyond = {};
     for (int octave = near.last; octave >= near.first; --octave) {
       for (std::size_t s = 0; s < sides_of_pair; ++s) beyond[s] += here[s]->rare(octave);
-      // The root of a count plus 3/8 has the standard error 1/2 (Anscombe 1948).
-      const auto root = [&](std::size_t s) { return std::sqrt((beyond[s] + 0.375) * inverse(s)); };
+      const double rate = root(beyond[0]) * std::sqrt(inverse(0));
+      const double other = root(beyond[1]) * std::sqrt(inverse(1));
       const double error = std::sqrt(inverse(0) + inverse(1)) / 2;
-      if (toward * (root(0) - root(1)) > errors_of_rates * error) return false;
+      if (toward * (rate - other) > errors_of_rates * error) return false;
     }
     return true;
   });
@@ -206,19 +208,29 @@ bool NoisePyramid::of_one_law(const Around& near, double toward) const {
 
 double NoisePyramid::growth(const std::array<PooledNoise::Moments, sides_of_pair>& here,
                             double toward) const {
-  const auto& [a, b] = here;
-  const double third = toward * (a.third * square(inverse(0)) - b.third * square(inverse(1)));
-  const std::size_t side = lacking(toward);
+  std::array<double, sides_of_pair> third = {};
+  for (std::size_t s = 0; s < sides_of_pair; ++s) {
+    third[s] = (s == 0 ? toward : -toward) * here[s].third * square(inverse(s));
+  }
+  // This side may have missed values: bright ones of a darker side, dark ones of a brighter.
+  const std::size_t side = third[0] >= third[1] ? 0 : 1;
   const double second = here[side].second * inverse(side);
-  return second > 0 ? third / second : 0;
+  return second > 0 ? (third[0] + third[1]) / second : 0;
 }
 
 std::optional<double> NoisePyramid::growth_of_blocks(const CellNoise& cell, double sign,
                                                      const Rectangle& window,
                                                      std::size_t channel) const {
-  constexpr double fewest = 2;  // One giant tells no size of the rare.
-  const double toward = (sign < 0) == (cell.concentration < 0) ? -1 : 1;
   const Around near = around(window, channel);
+  const double toward = sign < 0 ? 1 : -1;
+  std::optional<double> largest = growth_toward(near, toward);
+  if (cell.alternates) largest = std::max(largest, growth_toward(near, -toward));
+  if (largest) *largest *= cell.concentration;
+  return largest;
+}
+
+std::optional<double> NoisePyramid::growth_toward(const Around& near, double toward) const {
+  constexpr double fewest = 2;  // One giant tells no size of the rare.
   if (of_one_law(near, toward)) return std::nullopt;
   double largest = 0;
   for (const auto& [a, b] : near.blocks) {
@@ -231,7 +243,7 @@ std::optional<double> NoisePyramid::growth_of_blocks(const CellNoise& cell, doub
           std::max(largest, growth({a->rare_cut_off(octave), b->rare_cut_off(octave)}, toward));
     }
   }
-  return std::abs(cell.concentration) * largest;
+  return largest;
 }
 
 double NoisePyramid::growth(const CellNoise& cell, double sign, const Rectangle& window,

@@ -95,11 +95,12 @@ struct CellNoise {
   double effect = 0;
   std::array<double, sides_of_pair> variance = {};  // Each side's part of the squared error.
   double degrees = 1;
-  double third = 0;    // Third cumulant of the effect, of independent elements; 0 of few.
-  double weights = 0;  // The mean over the halves of the weights' sum.
-  // The sum of the squared weights, with the signs in turn, over the square of the weights' sum. It
-  // is the mean of this over the halves, as is a reference's squared error. Both are exact where
-  // the halves' weights are in proportion, and else too large.
+  double third = 0;         // Third cumulant of the effect, of independent elements; 0 of few.
+  double weights = 0;       // The mean over the halves of the weights' sum.
+  bool alternates = false;  // True if rare values of either sign move the effect either way.
+  // The sum of the squared weights over the square of the weights' sum. It is the mean of this over
+  // the halves, as is a reference's squared error. Both are exact where the halves' weights are in
+  // proportion, and else too large.
   double concentration = 0;
 };
 
@@ -169,8 +170,9 @@ class NoisePyramid {
   // ln p of an effect that values could explain which the cell never showed, as large as the noise
   // of its neighbours (constant_sample.h).
   double log_p_with_unseen(const ImageEffect& effect, double weights) const;
-  // The k3 / k2 that the blocks tell of an effect of this sign; none where the sides are of one
-  // law.
+  // The k3 / k2 that the blocks tell of an effect of this sign, or toward a side, for one element;
+  // none where the sides are of one law.
+  std::optional<double> growth_toward(const Around& near, double toward) const;
   std::optional<double> growth_of_blocks(const CellNoise& cell, double sign,
                                          const Rectangle& window, std::size_t channel) const;
 

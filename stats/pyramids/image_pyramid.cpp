@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <string>
 
 #include "stats/basics/check.h"
@@ -40,7 +41,8 @@ Rectangle around(const Rectangle& window, std::size_t channel, const ImageExtent
 RowPyramid::RowPyramid(const ImagePair& pair, const PyramidOptions& options)
     : extent_(pair.a.extent),
       for_each_(options.for_each),
-      constants_decide_(options.constants_decide) {
+      constants_decide_(options.constants_decide),
+      unseen_(options.unseen) {
   check::image_pair(function_name, pair);
   if (!options.z.empty() && options.z.size() != extent_.elements()) {
     check::fail({function_name, "z.size()"}, options.z.size(), "that of the elements");
@@ -105,20 +107,15 @@ void RowPyramid::add_best(ImageFamily& family) const {
 ImageFamily RowPyramid::family() {
   const ElementCounts& counts = found_.counts;
   ImageFamily family{.tested = counts.tested,
-                     .equal_constants = counts.equal_constants,
-                     .different_constants = counts.different_constants,
+                     .equal_constants = counts.equal_constants - unseen_.size(),
+                     .unseen = std::move(unseen_),
                      .hidden_squares = found_.noise.hidden_squares(),
                      .hidden_squares_of_twice = found_.noise.hidden_squares(2)};
-  if (counts.different_constants > 0) {
-    std::vector<std::size_t> alike;
-    for (std::size_t i = counts.first_different; i < extent_.elements(); ++i) {
-      if (found_.z[i] == found_.z[counts.first_different]) alike.push_back(i);
-    }
-    family.groups.push_back(certain_finding(extent_, alike, counts.difference));
-  } else {
-    family.typical.noise = offer_cells();
-    add_best(family);
-  }
+  std::ranges::copy(found_.unseen, std::back_inserter(family.unseen));
+  std::ranges::sort(family.unseen, {}, &UnseenElement::element);
+  family.typical.noise = offer_cells();
+  add_best(family);
+  add_unseen(extent_, family);
   family.weights = std::move(found_.weights);
   decide(family);
   return family;

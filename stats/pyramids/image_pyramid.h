@@ -35,8 +35,10 @@ namespace assay::stats {
 // the images may be looked at at the same time (`for_each`).
 //
 // An element that never varied has no weight unless it differs. Then it is in sums if its
-// neighbours vary, and a finding by itself, unless values that it never showed may make up the
-// difference (`constants_decide`).
+// neighbours vary. With `constants_decide` it is also tested by itself: values that it never showed
+// may be as large as those of its tile of 64 x 32 elements (constant_sample.h, size_about). In a
+// tile without noise there are none, and the difference is certain. `unseen` has elements that were
+// tested before.
 //
 // Throws std::domain_error for unequal extents, fewer than least_replicates images, values that are
 // not finite, and a negative standard error of a reference.
@@ -44,6 +46,7 @@ struct PyramidOptions {
   std::span<double> z = {};
   ForEach for_each = one_by_one;
   bool constants_decide = true;
+  std::vector<UnseenElement> unseen = {};
 };
 
 // image_pyramid for images that are read rows after rows, with the same bits. It keeps z and a
@@ -69,6 +72,7 @@ class RowPyramid {
   ImageExtent extent_;
   ForEach for_each_;
   bool constants_decide_;
+  std::vector<UnseenElement> unseen_;
   std::vector<double> own_z_;
   std::vector<WindowGroup> groups_;
   std::array<Half, halves> half_;  // They are of the rows taken last.

@@ -97,11 +97,10 @@ TEST_F(Constants, BeyondTheRangeAConstantIsCertainlyWrong) {
   const Settled part = settled(0, {images});
   ASSERT_EQ(part.constants.unseen.size(), 1u);
   EXPECT_LT(part.constants.unseen[0].log_p, std::log(1e-100));
-  EXPECT_GT(z_of(part.constants.unseen[0]), 20);
+  EXPECT_GT(part.constants.unseen[0].z(), 20);
 }
 
-// As constants of two images that differ fail, a difference of pairs that never varies stays as it
-// is.
+// Different constants are the pyramid's matter.
 TEST_F(Constants, OfTwoImagesAndOfPairsAreEqualWithinRoundingOnly) {
   const Stack first = at_reference(16);
   Stack second = first;

@@ -152,19 +152,6 @@ TEST(FineCells, OfSmallImagesAreCutOffAtEveryEdge) {
   expect_cells_of({.width = 2, .height = 2, .channels = 1}, 867);
 }
 
-TEST(ElementCounts, NameTheFirstConstantThatDiffersInWhicheverOrderTheyCome) {
-  const ElementCounts early{.different_constants = 1, .first_different = 3, .difference = 2};
-  const ElementCounts late{.different_constants = 2, .first_different = 7, .difference = -1};
-  for (const bool in_order : {true, false}) {
-    ElementCounts counts = in_order ? early : late;
-    counts.merge(in_order ? late : early);
-    counts.merge({.equal_constants = 1});
-    EXPECT_EQ(counts.different_constants, 3U);
-    EXPECT_EQ(counts.first_different, 3U);
-    EXPECT_EQ(counts.difference, 2);
-  }
-}
-
 TEST(BestCell, IsTheFirstOfEqualsInWhicheverOrderTheyCome) {
   Candidate first;
   first.finding.window = {2, 0, 2, 2};
