@@ -276,8 +276,9 @@ Estimate variance_of(const stats::Moments& moments, double primaries, double con
   const Estimate alone{number(primaries * moments.variance()), {}, {}};
   if (!has_spread(moments)) return alone;
   const stats::Influence influence = stats::influence_of_variance(stats::joint_of_four(moments));
-  // One observation makes up most of what the variance's own spread is known from.
-  if (stats::dominance_gate(influence.relative).state == stats::GateState::red) return alone;
+  // Few observations make up most of what the variance's own spread is known from.
+  const stats::Gate gate = stats::effective_observations_gate({&influence.relative, 1});
+  if (gate.state == stats::GateState::red) return alone;
   const stats::Interval log = stats::interval_by_inversion(
       [&](double theta) { return stats::influence_t(influence, theta); },
       {.estimate = influence.log_value, .step = influence.relative.standard_error()}, confidence);

@@ -19,7 +19,6 @@ constexpr double red_factor = 2;
 constexpr double kurtosis_limit = 0.2;
 constexpr double red_share = 0.5;
 constexpr double green_share = 0.25;
-constexpr double fewest_effective = 32;
 
 // ---- Normal-data quantiles of g1 and b2
 
@@ -316,10 +315,10 @@ Gate effective_observations_gate(std::span<const Moments> samples) {
   }
   if (sum == 0) throw ZeroVariance("effective_observations_gate: zero variance");
   const double value = sum / sum_of_squares * sum;
-  const GateState state = value < fewest_effective       ? GateState::red
-                          : value < 2 * fewest_effective ? GateState::amber
-                                                         : GateState::green;
-  return {"effective observations", value, value, fewest_effective, state};
+  const GateState state = value < fewest_effective_observations       ? GateState::red
+                          : value < 2 * fewest_effective_observations ? GateState::amber
+                                                                      : GateState::green;
+  return {"effective observations", value, value, fewest_effective_observations, state};
 }
 
 Gate kurtosis_gate(const Moments& x) {

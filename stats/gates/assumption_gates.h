@@ -56,6 +56,7 @@ Gate dominance_gate(const Moments& x);
 // not seen may move it further than its law allows (measurements.md). Red below 32, green from 64
 // on. Without fourth powers sum w / max w takes its place, which is less.
 // For the contrast of the means of two samples, each of n has w = (x - mean)^2 / n^2.
+inline constexpr double fewest_effective_observations = 32;
 Gate effective_observations_gate(std::span<const Moments> samples);
 
 // For F and chi-square tests of variances. Value: excess kurtosis b2 - 3. Green up to .2, limit .2.

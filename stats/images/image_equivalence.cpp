@@ -11,6 +11,7 @@
 #include "stats/basics/check.h"
 #include "stats/basics/moments.h"
 #include "stats/basics/vector_copies.h"
+#include "stats/gates/assumption_gates.h"
 #include "stats/tails/tails.h"
 
 namespace assay::stats {
@@ -295,8 +296,6 @@ TestResult squared_margin_test(const ImageDistance& distance, double squared_mar
 namespace {
 
 constexpr double never = std::numeric_limits<double>::lowest();
-// As a sum of squares rests on at least (assumption_gates.h).
-constexpr double least_elements = 32;
 
 // The natural logarithm of the p-value of "one of the means is `margin` off or more".
 double log_p_of_means(const ThetaOfImages& theta, double margin) {
@@ -322,7 +321,7 @@ TestResult test_of_squares(const ThetaOfImages& theta, double margin) {
   TestResult result = at(theta.of_elements, margin + theta.hidden);
   if (theta.share > 0)
     result.log_p_upper = std::min(0.0, result.log_p_upper - std::log(theta.share));
-  if (theta.of_elements.elements < least_elements) result.log_p_upper = 0;
+  if (theta.of_elements.elements < fewest_effective_observations) result.log_p_upper = 0;
   result.log_p_lower = std::max(at(at_least_zero, least).log_p_lower, log_p_of_means(theta, least));
   return result;
 }
