@@ -67,8 +67,10 @@ ByteSource::ByteSource(const std::string& file) : name_(called(file)) {
                            : ::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
   if (descriptor_.number < 0 || ::fstat(descriptor_.number, &opened_) != 0) {
     const std::string why = std::string("it cannot be read: ") + std::strerror(errno);
-    const std::string folder = std::filesystem::absolute(file).parent_path();
-    refuse(why + (errno == ENOENT ? near_file(file, "it was sought in `" + folder + "`") : ""));
+    if (errno != ENOENT) refuse(why);
+    std::error_code ignored;
+    const std::string folder = std::filesystem::absolute(file, ignored).parent_path();
+    refuse(why + near_file(file, "it was sought in `" + folder + "`"));
   }
   if (S_ISDIR(opened_.st_mode)) refuse("it cannot be read: it is a folder; name a file in it");
   constexpr std::string_view gzip = "\x1f\x8b";

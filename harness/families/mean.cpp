@@ -555,11 +555,7 @@ class MeanTheta : public Theta {
       const std::uint64_t seen = outcome.secondaries(side) * outcome.plan.primaries[side];
       if (std::isfinite(upwards ? range.high : range.low) || seen >= many) continue;
       const double rarer = std::floor(static_cast<double>(std::max<std::uint64_t>(3, seen)) / 3);
-      const double away =
-          rarer * std::abs(effect.estimate.value_or(0)) / std::abs(question.factor_of(side));
-      return fmt::format("rare values {} off{} may explain it{}",
-                         reports::human(away, 2) + (effect.relative ? " times the mean" : ""),
-                         effect.relative ? "" : " the mean",
+      return fmt::format("values rarer than 1 in {:.0f} may explain it{}", rarer,
                          is_recorded(question.subjects[side]) ? "" : "; declare a range");
     }
     return "";

@@ -10,6 +10,7 @@
 #include "harness/base/work.h"
 #include "harness/theta/theta.h"
 #include "stats/basics/moments.h"
+#include "stats/gates/assumption_gates.h"
 #include "stats/images/image_equivalence.h"
 #include "stats/images/image_law.h"
 #include "stats/pyramids/image_pyramid.h"
@@ -320,15 +321,25 @@ ChannelEvidence evidence_of_images(const Seen& seen, const ImageTest& test) {
                           .distribution = {"image-family", {static_cast<double>(family.tested)}},
                           .log_p_lower = 0,
                           .log_p_upper = family.log_p};
-  // The distance decides where no place does.
-  if (images.share > 0 && family.log_p > std::log(test.share.alpha)) {
+  // The distance decides where no place does, if it rests on many pixels.
+  if (images.share > 0 && family.log_p > std::log(test.share.alpha) &&
+      distance.elements >= stats::fewest_effective_observations) {
     stats::TestResult by_distance = stats::theta_test(images, 0);
     by_distance.log_p_lower = 0;
     if (by_distance.log_p_upper < family.log_p) equal = by_distance;
   }
   Evidence evidence{
       .estimate = images.estimate(),
-      .at = [=](double theta) { return theta > 0 ? stats::theta_test(images, theta) : equal; },
+      .at =
+          [=](double theta) {
+            if (!(theta > 0)) return equal;
+            stats::TestResult result = stats::theta_test(images, theta);
+            // What exceeds a margin differs. A single reference's own noise is part of theta.
+            if (images.share > 0) {
+              result.log_p_upper = std::max(result.log_p_upper, equal.log_p_upper);
+            }
+            return result;
+          },
       .interval = [=](double confidence) { return stats::theta_interval(images, confidence); },
       .quantity = relative ? "relative root mean square difference of the images"
                            : "root mean square difference of the images",

@@ -62,6 +62,8 @@ ScannedNumber scan_number(std::string_view text) {
   return found;
 }
 
+std::vector<std::string> quantity_words() { return mapped(quantities(), &QuantityRow::word); }
+
 /// Cuts a claim into words, numbers (with their sign), and ( ) , * % == <= >= < > +-.
 class Lexer {
  public:
@@ -147,11 +149,13 @@ class Lexer {
               "the name of a part must follow the `.` at once; a file is read by an estimator of "
               "the plugin `recorded`"},
     };
-    const std::string_view before = text_.substr(0, at_);
-    if (const std::size_t sign = before.find_last_of("=<>");
-        divisor() != 0 && sign != before.npos) {
-      refuse(place(), "a claim has no arithmetic; a factor stands on the right: `{:.6g} * {}`",
-             1 / divisor(), boost::trim_copy(std::string(before.substr(sign + 1))));
+    const std::string before = boost::trim_copy(std::string(text_.substr(0, at_)));
+    const std::string divided = boost::trim_copy(before.substr(before.find_last_of("=<>") + 1));
+    // A quantity by itself can have the factor.
+    if (std::isfinite(1 / divisor()) && divided.size() < before.size() && before.ends_with(')') &&
+        std::ranges::count(quantity_words(), divided.substr(0, divided.find('('))) > 0) {
+      refuse(place(), "a claim has no arithmetic; a factor stands on the right: `{} * {}`",
+             1 / divisor(), divided);
     }
     for (const Habit& habit : habits) {
       if (rest().starts_with(habit.written)) refuse(place(), std::string(habit.advice));
@@ -177,8 +181,6 @@ class Lexer {
 };
 
 using Kind = Token::Kind;
-
-std::vector<std::string> quantity_words() { return mapped(quantities(), &QuantityRow::word); }
 
 Source source_of(const Token& word) {
   const std::size_t dot = std::min(word.text.find('.'), word.text.size());

@@ -29,7 +29,9 @@ std::optional<Budget> budget_of(const TestOutcome& outcome) {
 /// The setting for so many times the observations.
 reports::Advice setting(const TestOutcome& outcome, double factor) {
   const std::optional<Budget> budget = budget_of(outcome);
-  if (budget && budget->seconds) {
+  // A budget that allowed all looks did not end them.
+  const bool took_all = outcome.look + 1 >= outcome.plan.looks.count();
+  if (budget && budget->seconds && !took_all) {
     return {.key = "budget",
             .value = fmt::format("{}s", std::ceil(10 * factor * *budget->seconds) / 10)};
   }

@@ -202,11 +202,12 @@ std::uint64_t paid_for(const TestOutcome& test, std::uint64_t whole, std::uint64
     if (next == spent || next > budget) return paid;
     paid += (budget - spent) / (next - spent);
   }
-  refuse(test.question.test->place_of("budget"),
-         "its budget (or its share of the suite's) of {} primaries is too small for a pilot and "
-         "two observations, the fewest that can be tested: these take {}; give a larger budget, or "
-         "fewer `primaries`",
-         whole, fewest_tested * each);
+  refuse(
+      test.question.test->place_of("budget"),
+      "its budget (or its share of the suite's) of {} primaries is too small: the pilot takes {}, "
+      "and two observations, the fewest that can be tested, {}; give a larger budget, or fewer "
+      "`primaries`",
+      whole, pilots, fewest_tested * each);
 }
 
 /// Throws InputError before hours are spent on what was hardly meant.

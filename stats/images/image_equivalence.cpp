@@ -11,7 +11,6 @@
 #include "stats/basics/check.h"
 #include "stats/basics/moments.h"
 #include "stats/basics/vector_copies.h"
-#include "stats/gates/assumption_gates.h"
 #include "stats/tails/tails.h"
 
 namespace assay::stats {
@@ -321,7 +320,6 @@ TestResult test_of_squares(const ThetaOfImages& theta, double margin) {
   TestResult result = at(theta.of_elements, margin + theta.hidden);
   if (theta.share > 0)
     result.log_p_upper = std::min(0.0, result.log_p_upper - std::log(theta.share));
-  if (theta.of_elements.elements < fewest_effective_observations) result.log_p_upper = 0;
   result.log_p_lower = std::max(at(at_least_zero, least).log_p_lower, log_p_of_means(theta, least));
   return result;
 }

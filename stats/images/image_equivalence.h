@@ -26,7 +26,8 @@ struct ImageDistance {
   double norm_variance = 0;
   double covariance = 0;
   double degrees = 0;
-  // The number of elements on which U rests: (sum d^2)^2 / sum d^4, d = mean a - mean b.
+  // The number of elements on which U rests: (sum d^2)^2 / sum d^4, d = mean a - mean b. Rare light
+  // that one side missed in few of them is a matter of places, whose neighbours tell of it.
   double elements = std::numeric_limits<double>::infinity();
 };
 
@@ -119,9 +120,7 @@ inline constexpr double share_of_distance = 0.25;
 // Null hypothesis: theta = margin. A hidden bias may be part of theta, or make up theta. An
 // estimate below 0 counts as 0, since no bias is smaller. Noise that all elements share enters the
 // squared distance squared, so the jackknife misses it where it cancels a bias: the means decide as
-// well. The upper p-value is over the share. It is 1 where U rests on fewer elements than
-// fewest_effective_observations (assumption_gates.h). Rare light that one side missed in few pixels
-// is a matter of places, whose neighbours tell of it. Asymptotic. Throws as squared_margin_test.
+// well. The upper p-value is over the share. Asymptotic. Throws as squared_margin_test.
 TestResult theta_test(const ThetaOfImages& theta, double margin);
 
 // Values of theta that theta_test does not reject, but for places at 0. They are found by the

@@ -119,7 +119,7 @@ struct TypicalCell {
 // Unseen values may make up the difference (stats/means/constant_sample.h).
 struct UnseenElement {
   std::size_t element = 0;
-  double sign = 0;  // Of the difference.
+  double sign = 0;  // The sign of the difference.
   double log_p = 0;
 
   bool certain() const { return log_p == std::numeric_limits<double>::lowest(); }

@@ -25,6 +25,10 @@ void check_arguments(const ConstantSample& sample, const Reference& reference) {
   }
 }
 
+double reach_toward(const ConstantSample& sample, double other) {
+  return other > sample.value ? sample.high - sample.value : sample.value - sample.low;
+}
+
 // The two ways in which a constant and a reference may differ although the claim holds.
 struct Difference {
   double size = 0;  // d of the header.
@@ -57,14 +61,31 @@ double largest_log_p(const Difference& difference) {
 double log_p_constant(const ConstantSample& sample, const Reference& reference) {
   check_arguments(sample, reference);
   const double size = std::abs(reference.value - sample.value);
-  const bool above = reference.value > sample.value;
-  const Difference difference{
-      .size = size,
-      .reach = above ? sample.high - sample.value : sample.value - sample.low,
-      .error = reference.standard_error,
-      .count = static_cast<double>(sample.count)};
+  const Difference difference{.size = size,
+                              .reach = reach_toward(sample, reference.value),
+                              .error = reference.standard_error,
+                              .count = static_cast<double>(sample.count)};
   if (size == 0) return 0;
   return difference.error > 0 ? largest_log_p(difference) : difference.log_unseen(size);
+}
+
+double log_p_constants(const ConstantSample& a, const ConstantSample& b) {
+  check_arguments(a, {b.value});
+  check_arguments(b, {a.value});
+  const auto at = [](const ConstantSample& sample, double other) {
+    return Difference{.reach = reach_toward(sample, other),
+                      .count = static_cast<double>(sample.count)};
+  };
+  const Difference of_a = at(a, b.value);
+  const Difference of_b = at(b, a.value);
+  const double size = std::abs(b.value - a.value);
+  const double least = std::max(0.0, size - of_b.reach);
+  const double most = std::min(size, of_a.reach);
+  if (least > most) return probability_zero;
+  const auto log_p = [&](double shift) {
+    return std::max(probability_zero, of_a.log_unseen(shift) + of_b.log_unseen(size - shift));
+  };
+  return maximum(log_p, least, most).value;
 }
 
 double size_about(double constant, const Moments& others) {

@@ -29,8 +29,13 @@ struct ConstantSample {
 // non-finite value or reference, a negative error, a value outside its range.
 double log_p_constant(const ConstantSample& sample, const Reference& reference);
 
-// How far from a constant c the values lie that it may have missed, if they are as these others x:
-// sqrt(E (x - c)^4 / E (x - c)^2), so that rare large ones tell it. Infinite if all others are c.
+// The same of two such samples. Null hypothesis: E a = E b. Unseen values of either may make up
+// parts of the difference. With d = |b.value - a.value|, and reaches r toward the other value, p is
+// the sup over 0 <= s <= d of (1 - s / ra)^na (1 - (d - s) / rb)^nb. Throws as above.
+double log_p_constants(const ConstantSample& a, const ConstantSample& b);
+
+// The reach of values x that a constant c may have missed, if they are as these others:
+// sqrt(E (x - c)^4 / E (x - c)^2). Rare large ones tell it. It is infinite if all others are c.
 // Throws std::domain_error for no values.
 double size_about(double constant, const Moments& others);
 

@@ -162,7 +162,7 @@ CellNoiseOfMean offer_coarse_cells(const CoarseImages& coarse, const Groups& gro
   const WelchCells moments = window_moments(coarse, in_blocks, channel);
   TypicalNoise typical;
   for_each_window(in_blocks, [&](const WindowGroup& group, std::size_t i, std::size_t window) {
-    // Different constants of two images were found before.
+    // Its constants are tested by themselves.
     if (!moments.varied(window)) return;
     const bool alternating = group.grid == Grid::alternating;
     const auto g = static_cast<std::size_t>(&group - in_blocks.data());

@@ -391,26 +391,27 @@ class FineTiles {
 
   // Tests each element.
   void offer_elements(const Tile& tile) {
-    for_each_element(tile, [&](std::size_t, std::size_t element, std::size_t x, std::size_t y,
-                               std::size_t c) {
-      const std::size_t vary = halves_that_vary(element);
-      found_.weights[element] = static_cast<float>(weight_of(element));
-      if (vary > 0) add_element(element, x, y, c);
-      if (vary < halves) {
-        const bool differs = vary == 0 && cells_.constants_decide && difference_of(element) != 0;
-        if (differs) note_different(tile, element, c);
-        counts_.equal_constants += differs ? 0 : 1;
-        found_.z[element] = differs ? unseen_.back().z() : 0;
-        return;
-      }
-      ++counts_.tested;
-      const CellNoise noise = noise_of(element);
-      const StudentValue value = own_value(noise);
-      found_.z[element] = t_to_z(value);
-      if (!candidates_[0].wants(value.t)) return;
-      const Rectangle place{static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y), 1, 1};
-      candidates_[0].keep({{.window = place, .channel = c, .z = found_.z[element]}, noise});
-    });
+    for_each_element(
+        tile, [&](std::size_t, std::size_t element, std::size_t x, std::size_t y, std::size_t c) {
+          const std::size_t vary = halves_that_vary(element);
+          found_.weights[element] = static_cast<float>(weight_of(element));
+          if (vary > 0) add_element(element, x, y, c);
+          if (vary < halves) {
+            const bool differs =
+                cells_.constants_decide && is_constant(element) && difference_of(element) != 0;
+            if (differs) note_different(tile, element, c);
+            counts_.equal_constants += differs ? 0 : 1;
+            found_.z[element] = differs ? unseen_.back().z() : 0;
+            return;
+          }
+          ++counts_.tested;
+          const CellNoise noise = noise_of(element);
+          const StudentValue value = own_value(noise);
+          found_.z[element] = t_to_z(value);
+          if (!candidates_[0].wants(value.t)) return;
+          const Rectangle place{static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y), 1, 1};
+          candidates_[0].keep({{.window = place, .channel = c, .z = found_.z[element]}, noise});
+        });
   }
 
   // The halves' own moments tell of an element alone.
@@ -534,46 +535,68 @@ class FineTiles {
         cells_.half, [here](const Half& half) { return half.variance_at(here) > 0; }));
   }
 
-  // A side that never varies in the tile has no unseen values, as far as anyone can tell.
+  // True if no replicate of either side differs from another.
+  bool is_constant(std::size_t element) const {
+    const auto& [even, odd] = cells_.half;
+    const std::size_t here = element - even.first;
+    const auto one_value = [&](std::size_t side) {
+      return even.mean[side].empty() || even.mean[side][here] == odd.mean[side][here];
+    };
+    return halves_that_vary(element) == 0 && one_value(0) && one_value(1);
+  }
+
   void note_different(const Tile& tile, std::size_t element, std::size_t channel) {
-    const double difference = difference_of(element);
-    const double value = mean_of(0, element);
-    const double other = value - difference;
-    double log_p = log_p_of_unseen(tile, cells_.pair.a, {0, channel}, value, other);
-    if (cells_.pair.b != nullptr) {
-      log_p = std::max(log_p, log_p_of_unseen(tile, *cells_.pair.b, {1, channel}, other, value));
-    }
-    unseen_.push_back({element, std::copysign(1, difference), log_p});
+    const double first = mean_of(0, element);
+    const double second = mean_of(1, element);
+    const ConstantSample exact{second, second, second, 1};
+    const bool of_two = cells_.pair.b != nullptr;
+    unseen_.push_back(
+        {element, first < second ? -1.0 : 1.0,
+         log_p_constants(
+             with_unseen(tile, cells_.pair.a, {0, element, channel}, first),
+             of_two ? with_unseen(tile, *cells_.pair.b, {1, element, channel}, second) : exact)});
   }
 
   struct OfTile {
     std::size_t side;
+    std::size_t element;
     std::size_t channel;
   };
-  // ln p of a constant whose unseen values are as large as those of the tile.
-  double log_p_of_unseen(const Tile& tile, const ImageStack& stack, OfTile of, double value,
-                         double expected) {
-    const Moments& around = values_of_tile(tile, stack, of);
-    if (around.m2 == 0) return std::numeric_limits<double>::lowest();
-    const double size = size_about(value, around);
-    return log_p_constant({value, value - size, value + size, stack.images.size()}, {expected});
+  // Unseen values are as large as those of the tile, if some noise is near. Else there are none, as
+  // far as anyone can tell.
+  ConstantSample with_unseen(const Tile& tile, const ImageStack& stack, OfTile of, double value) {
+    const double size =
+        is_noise_near(tile, of) ? size_about(value, values_of_tile(tile, stack, of)) : 0;
+    return {value, value - size, value + size, stack.images.size()};
   }
 
-  // All values of the tile's elements, or a single one if no element varies.
+  // Within so many elements of the tile.
+  static constexpr std::size_t near = 8;
+  bool is_noise_near(const Tile& tile, OfTile of) const {
+    const std::size_t place = of.element / extent_.channels;
+    const auto first = [](std::size_t at, std::size_t start) {
+      return std::max(at, start + near) - near;
+    };
+    const std::size_t x = place % extent_.width, y = place / extent_.width;
+    const std::size_t right = std::min(x + near + 1, tile.x + tile.width());
+    const std::size_t bottom = std::min(y + near + 1, tile.y + tile.height());
+    for (std::size_t row = first(y, tile.y); row < bottom; ++row) {
+      for (std::size_t column = first(x, tile.x); column < right; ++column) {
+        const std::size_t here =
+            (row * extent_.width + column) * extent_.channels + of.channel - cells_.half[0].first;
+        for (const Half& half : cells_.half) {
+          if (half.variance[of.side][here] > 0) return true;
+        }
+      }
+    }
+    return false;
+  }
+
   const Moments& values_of_tile(const Tile& tile, const ImageStack& stack, OfTile of) {
     std::vector<Moments>& all = values_of_tile_[of.side];
     all.resize(extent_.channels);
     Moments& values = all[of.channel];
     if (values.count > 0) return values;
-    values.add(0);
-    bool varies = false;
-    for_each_element(tile, [&](std::size_t, std::size_t element, auto, auto, std::size_t c) {
-      const std::size_t here = element - cells_.half[0].first;
-      for (const Half& half : cells_.half)
-        varies |= c == of.channel && half.variance[of.side][here] > 0;
-    });
-    if (!varies) return values;
-    values = {};
     for_each_element(tile, [&](std::size_t, std::size_t element, auto, auto, std::size_t c) {
       if (c != of.channel) return;
       for (std::size_t r = 0; r < stack.images.size(); ++r) values.add(*stack.at(r, element));

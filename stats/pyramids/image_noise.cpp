@@ -212,10 +212,13 @@ double NoisePyramid::growth(const std::array<PooledNoise::Moments, sides_of_pair
   for (std::size_t s = 0; s < sides_of_pair; ++s) {
     third[s] = (s == 0 ? toward : -toward) * here[s].third * square(inverse(s));
   }
-  // This side may have missed values: bright ones of a darker side, dark ones of a brighter.
-  const std::size_t side = third[0] >= third[1] ? 0 : 1;
-  const double second = here[side].second * inverse(side);
-  return second > 0 ? (third[0] + third[1]) / second : 0;
+  // A side may have missed values: bright ones if it is darker, dark ones if it is brighter.
+  double largest = 0;
+  for (std::size_t s = 0; s < sides_of_pair; ++s) {
+    const double second = here[s].second * inverse(s);
+    if (third[s] > 0 && second > 0) largest = std::max(largest, (third[0] + third[1]) / second);
+  }
+  return largest;
 }
 
 std::optional<double> NoisePyramid::growth_of_blocks(const CellNoise& cell, double sign,

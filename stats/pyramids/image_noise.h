@@ -170,8 +170,8 @@ class NoisePyramid {
   // ln p of an effect that values could explain which the cell never showed, as large as the noise
   // of its neighbours (constant_sample.h).
   double log_p_with_unseen(const ImageEffect& effect, double weights) const;
-  // The k3 / k2 that the blocks tell of an effect of this sign, or toward a side, for one element;
-  // none where the sides are of one law.
+  // The k3 / k2 of one element, as the blocks tell it of an effect toward a side. None where the
+  // sides are of one law.
   std::optional<double> growth_toward(const Around& near, double toward) const;
   std::optional<double> growth_of_blocks(const CellNoise& cell, double sign,
                                          const Rectangle& window, std::size_t channel) const;

@@ -30,7 +30,7 @@ test_a_fail_says_how_to_repeat_it() {
   write_suite told.yaml "$good" '  - {name: a name that takes a second line of the command, claim: mean(normal) == 3}'
   expect 1 run told.yaml
   contains out 'again: assay run told.yaml'
-  contains out 'times the mean off may explain it; declare a range'
+  contains out 'may explain it; declare a range'
   lacks out '… (assay explain TEST)'
   seq 200 | awk '{ s = 16807 * (s + !s) % 2147483647; print s / 2147483647 }' >rows.txt
   sed -i 's/mean(normal) == 3}/variance(rows) == variance(normal)}/

@@ -48,6 +48,19 @@ TEST(ConstantSample, TheErrorTakesTheGreatestOfAllDivisions) {
   }
 }
 
+TEST(ConstantSample, TwoMayBothHaveMissedValues) {
+  const ConstantSample a{0, -1, 2, 16}, b{2, .5, 2, 24};
+  double most = -infinity;
+  for (int i = 0; i <= 100000; ++i) {
+    const double s = .5 + 1.5 * i / 100000;
+    most = std::max(most, 16 * std::log1p(-s / 2) + 24 * std::log1p(-(2 - s) / 1.5));
+  }
+  EXPECT_NEAR(log_p_constants(a, b), most, 1e-6);
+  EXPECT_NEAR(log_p_constants(b, a), most, 1e-6);
+  EXPECT_EQ(log_p_constants(a, {2, 2, 2, 1}), std::numeric_limits<double>::lowest());
+  EXPECT_NEAR(log_p_constants(a, {1, 1, 1, 1}), 16 * std::log(.5), 1e-9);
+}
+
 TEST(ConstantSample, OtherValuesCountByTheirSizeForOneThatWasMissed) {
   const Moments others = moments_of(std::vector{2.0, 2.0, 3.0, 5.0});
   EXPECT_NEAR(size_about(2, others), std::sqrt((1.0 + 81) / (1 + 9)), 1e-12);

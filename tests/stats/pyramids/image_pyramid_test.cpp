@@ -470,8 +470,8 @@ TEST(ImagePyramid, ALevelIsSharedOutAsItIsAdjusted) {
   }
 }
 
-// Noise of size 1 beside it may be unseen in it; it never makes up a difference of 4.
-TEST(ImagePyramid, AConstantThatDiffersByMoreThanNoiseIsCertainAndPlaced) {
+// Noise of size 1 beside it may be unseen in it; it never makes up a difference of 40.
+TEST(ImagePyramid, AConstantThatDiffersByMoreThanNoiseIsFoundAndPlaced) {
   Philox random(841);
   OwnedStack a = normal_stack(random, 16);
   OwnedStack b = normal_stack(random, 16);
@@ -485,23 +485,48 @@ TEST(ImagePyramid, AConstantThatDiffersByMoreThanNoiseIsCertainAndPlaced) {
   const ImageFamily unseen = image_pyramid({a.view(), b.view()});
   ASSERT_EQ(unseen.unseen.size(), 1);
   EXPECT_NEAR(unseen.unseen[0].log_p, 0, 1e-5);
-  for (auto& image : a.images) image[27] = -2;
-  for (auto& image : b.images) image[27] = 2;
+  for (auto& image : a.images) image[27] = -20;
+  for (auto& image : b.images) image[27] = 20;
   const ImageFamily different = image_pyramid({a.view(), b.view()});
-  EXPECT_EQ(different.log_p, std::numeric_limits<double>::lowest());
+  EXPECT_LT(different.log_p, -100);
   EXPECT_EQ(different.winner.window, (Rectangle{3, 2, 1, 1}));
   EXPECT_LT(different.winner.z, 0);
 }
 
+TEST(ImagePyramid, DifferentConstantsFarFromNoiseAreCertain) {
+  Philox random(843);
+  const auto draw = [&](float constant) {
+    return draw_stack({64, 32, 1}, 16, [&, constant](std::size_t element) {
+      return element < 8 ? random.normal() : constant;
+    });
+  };
+  const OwnedStack a = draw(1);
+  const OwnedStack b = draw(1.02F);
+  const ImageFamily family = image_pyramid({a.view(), b.view()});
+  EXPECT_EQ(family.log_p, std::numeric_limits<double>::lowest());
+  EXPECT_EQ(family.winner.window, (Rectangle{0, 0, 64, 32}));
+}
+
+// 2 / p with probability p, else 0, beside 2. A pixel that shows no 0 differs without noise.
+TEST(ImagePyramid, RouletteBesideAConstantIsNoDifference) {
+  Philox random(844);
+  int fails = 0;
+  for (int run = 0; run < 60; ++run) {
+    const OwnedStack b = draw_stack({32, 32, 1}, 16, [](std::size_t) { return 2.0F; });
+    const OwnedStack a = draw_stack(
+        {32, 32, 1}, 16, [&](std::size_t) { return random.uniform() < .95 ? 2 / .95F : 0; });
+    fails += image_pyramid({a.view(), b.view()}).log_p < std::log(.01);
+  }
+  EXPECT_LE(fails, 4);
+}
+
 TEST(ImagePyramid, AllDifferentConstantsOfOneSignAreThePlaceAndCertain) {
-  Philox random(842);
-  OwnedStack a = normal_stack(random, 16);
-  OwnedStack b = normal_stack(random, 16);
+  OwnedStack a = draw_stack(small, 16, [](std::size_t) { return 0; });
+  OwnedStack b = a;
   const std::size_t constant[] = {27, 40, 95, 119};
   for (const std::size_t e : constant) {
-    const float value = e == 119 ? 5 : -5;
-    for (auto& image : a.images) image[e] = value;
-    for (auto& image : b.images) image[e] = e == 40 ? value : -value;
+    for (auto& image : a.images) image[e] = 1;
+    for (auto& image : b.images) image[e] = e == 40 ? 1.0F : e == 119 ? 0.0F : 2.0F;
   }
   std::vector<double> z(small.elements());
   const ImageFamily family = image_pyramid({a.view(), b.view()}, {.z = z});
