@@ -85,13 +85,15 @@ std::string explain(const Suite& suite, const Test& test, int width, const Ledge
       next.push_back({.label = "what changed before that night", .paste = log});
     alarms = true;
   }
-  if (alarms)
+  if (alarms) {
+    constexpr Form escapes[] = {{'"', "\\\""}, {'\\', "\\\\"}};
+    const std::string line = in_single_quotes("begin \"" + escape(test.id, escapes) + "\"");
     next.push_back({.label = "if the change is meant, begin anew with the next night",
-                    .paste = begin_anew(ledger, test.id)});
+                    .paste = "echo " + line + " >> " + in_single_quotes(ledger.file)});
+  }
   if (next.empty()) return out;
-  const Standing how = standing(test);
-  const bool nothing =
-      !is_trouble(how) && how != Standing::not_run && next.size() == 1 && next[0].label == "again";
+  const bool nothing = !is_trouble(standing(test)) && standing(test) != Standing::not_run &&
+                       next.size() == 1 && next[0].label == "again";
   out += "\nWhat to do next\n";
   for (const Step& step : next) {
     out += "  " + (nothing ? "Nothing. To run it again" : step.label) + ":\n";

@@ -90,9 +90,8 @@ std::string image_fact(const Test& test) {
   }
   if (image.constant > 0) parts.push_back(fmt::format("constant elements: {}", image.constant));
   if (image.unseen > 0)
-    parts.push_back(fmt::format(
-        "constant elements that are not at their reference: {}, rarer values may be unseen",
-        image.unseen));
+    parts.push_back(
+        fmt::format("constant elements that differ: {}, rarer values may be unseen", image.unseen));
   return boost::join(parts, "; ");
 }
 
@@ -169,9 +168,8 @@ std::string observations_fact(const Test& test) {
   for (const Sample* sample : worst_samples(test)) {
     if (parts.size() == most) break;
     if (!said.insert({sample->estimator, sample->stream, sample->primaries, sample->nonfinite})
-             .second) {
+             .second)
       continue;
-    }
     parts.push_back(fmt::format("{} of {}", count_text(sample->secondaries), sample->estimator));
     if (sample->primaries > 1)
       parts.back() += fmt::format(" with {} each", counted(sample->primaries, "", "primaries"));

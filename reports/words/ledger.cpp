@@ -7,7 +7,6 @@
 #include <map>
 
 #include "reports/words/number.h"
-#include "reports/words/text.h"
 
 namespace assay::reports {
 namespace {
@@ -119,12 +118,6 @@ std::string changes(const LedgerSeries& series) {
   const std::string& before = std::prev(moved)->commit;
   if (before.empty() || before == moved->commit) return {};
   return fmt::format("git log --oneline {}..{}", before, moved->commit);
-}
-
-std::string begin_anew(const Ledger& ledger, const std::string& test) {
-  constexpr Form escapes[] = {{'"', "\\\""}, {'\\', "\\\\"}};
-  const std::string line = fmt::format("begin \"{}\"", escape(test, escapes));
-  return fmt::format("echo {} >> {}", in_single_quotes(line), in_single_quotes(ledger.file));
 }
 
 std::string quiet_sentence(const Ledger& ledger) {

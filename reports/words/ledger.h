@@ -30,9 +30,6 @@ std::string alarm_sentence(const LedgerSeries&);
 /// where they are one commit, or theta need not have moved.
 std::string changes(const LedgerSeries&);
 
-/// The command that begins the test's series anew, which ends its alarm.
-std::string begin_anew(const Ledger&, const std::string& test);
-
 /// One sentence for all series without an alarm: their number, and which stands highest.
 std::string quiet_sentence(const Ledger&);
 
