@@ -98,9 +98,11 @@ WelchCells window_moments(const CoarseImages& coarse, const Groups& groups, std:
     });
     add(moments.effect, half.effect, 1);
     add(moments.third, half.third, 3);
+    const bool of_two = !half.images[1].empty();
     sums.load(half.squared_weights);
     for_each_window(groups, [&](const WindowGroup& group, std::size_t i, std::size_t window) {
-      moments.add(moments.concentration, window, {{sums.total_of(group, i)}}, 2);
+      const double squares = of_two ? sums.of(group, i) : sums.total_of(group, i);
+      moments.add(moments.concentration, window, {{squares}}, 2);
     });
     for (std::size_t side = 0; side < sides_of_pair; ++side) {
       const std::vector<BlockSums<float>>& images = half.images[side];
@@ -170,7 +172,7 @@ CellNoiseOfMean offer_coarse_cells(const CoarseImages& coarse, const Groups& gro
     candidate.finding.size = group.size;
     candidate.finding.window = groups[g].windows[i];
     candidate.finding.channel = channel;
-    candidate.noise.alternates = alternating;
+    candidate.noise.alternates = alternating && coarse.half[0].images[1].empty();
     if (alternating) candidate.finding.alternation = static_cast<Alternation>(i);
     const StudentValue value = own_value(candidate.noise);
     candidate.finding.z = t_to_z(value);

@@ -562,17 +562,18 @@ class FineTiles {
     std::size_t element;
     std::size_t channel;
   };
-  // Unseen values are as large as those of the tile, if some noise is near. Else there are none, as
-  // far as anyone can tell.
+  // Unseen values are as large as those of the tile, where some element near has others beside this
+  // value. Else there are none, as far as anyone can tell.
   ConstantSample with_unseen(const Tile& tile, const ImageStack& stack, OfTile of, double value) {
-    const double size =
-        is_noise_near(tile, of) ? size_about(value, values_of_tile(tile, stack, of)) : 0;
+    const double size = is_left_near(tile, stack, of, static_cast<float>(value))
+                            ? size_about(value, values_of_tile(tile, stack, of))
+                            : 0;
     return {value, value - size, value + size, stack.images.size()};
   }
 
-  // Within so many elements of the tile.
+  // Near is within so many elements of the tile.
   static constexpr std::size_t near = 8;
-  bool is_noise_near(const Tile& tile, OfTile of) const {
+  bool is_left_near(const Tile& tile, const ImageStack& stack, OfTile of, float value) const {
     const std::size_t place = of.element / extent_.channels;
     const auto first = [](std::size_t at, std::size_t start) {
       return std::max(at, start + near) - near;
@@ -582,10 +583,12 @@ class FineTiles {
     const std::size_t bottom = std::min(y + near + 1, tile.y + tile.height());
     for (std::size_t row = first(y, tile.y); row < bottom; ++row) {
       for (std::size_t column = first(x, tile.x); column < right; ++column) {
-        const std::size_t here =
-            (row * extent_.width + column) * extent_.channels + of.channel - cells_.half[0].first;
-        for (const Half& half : cells_.half) {
-          if (half.variance[of.side][here] > 0) return true;
+        const std::size_t element = (row * extent_.width + column) * extent_.channels + of.channel;
+        const std::size_t here = element - cells_.half[0].first;
+        const auto varies = [&](const Half& half) { return half.variance[of.side][here] > 0; };
+        if (std::ranges::none_of(cells_.half, varies)) continue;
+        for (std::size_t r = 0; r < stack.images.size(); ++r) {
+          if (*stack.at(r, element) == value) return true;
         }
       }
     }
@@ -798,6 +801,7 @@ void add_up_alternating(CoarseImages& coarse) {
   };
   for (CoarseHalf& half : coarse.half) {
     add_up(half.effect);
+    add_up(half.squared_weights);
     for (auto& side : half.images) std::ranges::for_each(side, add_up);
   }
 }

@@ -225,10 +225,9 @@ std::optional<double> NoisePyramid::growth_of_blocks(const CellNoise& cell, doub
                                                      const Rectangle& window,
                                                      std::size_t channel) const {
   const Around near = around(window, channel);
-  const double toward = sign < 0 ? 1 : -1;
+  const double toward = cell.alternates || (sign < 0) != (cell.concentration < 0) ? 1 : -1;
   std::optional<double> largest = growth_toward(near, toward);
-  if (cell.alternates) largest = std::max(largest, growth_toward(near, -toward));
-  if (largest) *largest *= cell.concentration;
+  if (largest) *largest *= std::abs(cell.concentration);
   return largest;
 }
 

@@ -97,10 +97,10 @@ struct CellNoise {
   double degrees = 1;
   double third = 0;         // Third cumulant of the effect, of independent elements; 0 of few.
   double weights = 0;       // The mean over the halves of the weights' sum.
-  bool alternates = false;  // True if rare values of either sign move the effect either way.
-  // The sum of the squared weights over the square of the weights' sum. It is the mean of this over
-  // the halves, as is a reference's squared error. Both are exact where the halves' weights are in
-  // proportion, and else too large.
+  bool alternates = false;  // Signs in turn beside a reference: missed light moves it either way.
+  // The sum of the squared weights over the square of the weights' sum, between two sides with the
+  // signs in turn. It is the mean of this over the halves, as is a reference's squared error. Both
+  // are exact where the halves' weights are in proportion, and else too large.
   double concentration = 0;
 };
 

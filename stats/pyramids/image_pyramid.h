@@ -35,10 +35,10 @@ namespace assay::stats {
 // the images may be looked at at the same time (`for_each`).
 //
 // An element that never varied has no weight unless it differs. Then it is in sums if its
-// neighbours vary. With `constants_decide` it is also tested by itself (log_p_constants). If noise
-// is within 8 elements of its tile of 64 x 32, it may have missed values as large as that tile's.
-// Else it has missed none, and the difference is certain. `unseen` has elements that were tested
-// before.
+// neighbours vary. With `constants_decide` it is also tested by itself (log_p_constants). Where an
+// element within 8 of its tile of 64 x 32 has other values beside this one, it may have missed
+// values as large as that tile's. Else it has missed none, and the difference is certain. `unseen`
+// has elements that were tested before.
 //
 // Throws std::domain_error for unequal extents, fewer than least_replicates images, values that are
 // not finite, and a negative standard error of a reference.
