@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numbers>
 #include <span>
 #include <utility>
@@ -212,16 +213,17 @@ std::string means_where_it_differs(const DrawnTest& test) {
   const std::string& seen = channels[0].image->seen;
   if (fails && !seen.empty()) return "; there " + seen;
   std::string constants;
-  std::vector<stats::UnseenElement> unseen = channels[0].image->family.unseen;
-  std::erase_if(unseen, &stats::UnseenElement::certain);
-  if (!unseen.empty()) {
+  const std::vector<stats::UnseenElement>& unseen = channels[0].image->family.unseen;
+  const auto is_open = std::not_fn(&stats::UnseenElement::certain);
+  if (const auto first = std::ranges::find_if(unseen, is_open); first != unseen.end()) {
     const Question& question = test.outcome.question;
-    const bool one = unseen.size() == 1;
-    constants = fmt::format(
-        "; {}{} value{} from {}, {} {}: rare light may be unseen there", unseen.size(),
-        fails ? " other" : "", one ? " never varies and differs" : "s never vary and differ",
-        question.of_two() ? "the other side's" : "the reference", one ? "at" : "the first at",
-        element_place(*question.subjects[0].image, unseen[0].element));
+    const auto count = std::count_if(first, unseen.end(), is_open);
+    constants = fmt::format("; {}{} value{} from {}, {} {}: rare light may be unseen there", count,
+                            fails ? " other" : "",
+                            count == 1 ? " never varies and differs" : "s never vary and differ",
+                            question.of_two() ? "the other side's" : "the reference",
+                            count == 1 ? "at" : "the first at",
+                            element_place(*question.subjects[0].image, first->element));
   }
   if (!fails || !is_told_by_place(test.outcome, channels[0])) return constants;
   const std::optional<PlaceEffect> effect = effect_at_place(test);

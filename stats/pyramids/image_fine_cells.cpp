@@ -198,14 +198,14 @@ class FineTiles {
   }
 
   const ElementCounts& counts() const { return counts_; }
-  const std::vector<UnseenElement>& unseen() const { return unseen_; }
+  std::vector<UnseenElement> take_unseen() { return std::move(unseen_); }
 
   void take(const Tile& tile) {
     candidates_.assign(cells_.groups.size(), {});
     const std::size_t size = Tile::rows * tile.stride();
     elements_.start(size);
     for (WelchCells& moments : moments_) moments.start(size);
-    for (std::vector<Moments>& values : values_of_tile_) values.clear();
+    for (std::vector<OfSide>& channels : of_sides_) channels.clear();
     find_light(tile);
     for (std::size_t h = 0; h < halves; ++h) {
       add_weights(tile, h);
@@ -397,8 +397,7 @@ class FineTiles {
           found_.weights[element] = static_cast<float>(weight_of(element));
           if (vary > 0) add_element(element, x, y, c);
           if (vary < halves) {
-            const bool differs =
-                cells_.constants_decide && is_constant(element) && difference_of(element) != 0;
+            const bool differs = cells_.constants_decide && vary == 0 && is_different(element);
             if (differs) note_different(tile, element, c);
             counts_.equal_constants += differs ? 0 : 1;
             found_.z[element] = differs ? unseen_.back().z() : 0;
@@ -434,14 +433,6 @@ class FineTiles {
     const double total = noise.variance[0] + noise.variance[1];
     noise.degrees = total * total / reciprocal_degrees;
     return noise;
-  }
-
-  // The larger of both halves.
-  double difference_of(std::size_t element) const {
-    const std::size_t here = element - cells_.half[0].first;
-    const double even = cells_.half[0].difference[here];
-    const double odd = cells_.half[1].difference[here];
-    return std::abs(odd) > std::abs(even) ? odd : even;
   }
 
   double mean_of(std::size_t side, std::size_t element) const {
@@ -535,14 +526,15 @@ class FineTiles {
         cells_.half, [here](const Half& half) { return half.variance_at(here) > 0; }));
   }
 
-  // True if no replicate of either side differs from another.
-  bool is_constant(std::size_t element) const {
+  // True of an element that varies in neither half, if the sides have one value each, and not the
+  // same.
+  bool is_different(std::size_t element) const {
     const auto& [even, odd] = cells_.half;
     const std::size_t here = element - even.first;
-    const auto one_value = [&](std::size_t side) {
+    const auto has_one_value = [&](std::size_t side) {
       return even.mean[side].empty() || even.mean[side][here] == odd.mean[side][here];
     };
-    return halves_that_vary(element) == 0 && one_value(0) && one_value(1);
+    return has_one_value(0) && has_one_value(1) && mean_of(0, element) != mean_of(1, element);
   }
 
   void note_different(const Tile& tile, std::size_t element, std::size_t channel) {
@@ -573,7 +565,8 @@ class FineTiles {
 
   // Near is within so many elements of the tile.
   static constexpr std::size_t near = 8;
-  bool is_left_near(const Tile& tile, const ImageStack& stack, OfTile of, float value) const {
+  bool is_left_near(const Tile& tile, const ImageStack& stack, OfTile of, float value) {
+    if (!varies(tile, of)) return false;
     const std::size_t place = of.element / extent_.channels;
     const auto first = [](std::size_t at, std::size_t start) {
       return std::max(at, start + near) - near;
@@ -585,8 +578,7 @@ class FineTiles {
       for (std::size_t column = first(x, tile.x); column < right; ++column) {
         const std::size_t element = (row * extent_.width + column) * extent_.channels + of.channel;
         const std::size_t here = element - cells_.half[0].first;
-        const auto varies = [&](const Half& half) { return half.variance[of.side][here] > 0; };
-        if (std::ranges::none_of(cells_.half, varies)) continue;
+        if (!varies(of.side, here)) continue;
         for (std::size_t r = 0; r < stack.images.size(); ++r) {
           if (*stack.at(r, element) == value) return true;
         }
@@ -595,10 +587,32 @@ class FineTiles {
     return false;
   }
 
+  bool varies(std::size_t side, std::size_t here) const {
+    return std::ranges::any_of(cells_.half,
+                               [&](const Half& half) { return half.variance[side][here] > 0; });
+  }
+
+  // One channel of a side in the tile.
+  struct OfSide {
+    std::optional<bool> varies = {};
+    Moments values = {};
+  };
+  OfSide& asked_for(OfTile of) {
+    std::vector<OfSide>& channels = of_sides_[of.side];
+    channels.resize(extent_.channels);
+    return channels[of.channel];
+  }
+  bool varies(const Tile& tile, OfTile of) {
+    std::optional<bool>& known = asked_for(of).varies;
+    if (known) return *known;
+    bool any = false;
+    for_each_element(tile, [&](std::size_t, std::size_t element, auto, auto, std::size_t c) {
+      any = any || (c == of.channel && varies(of.side, element - cells_.half[0].first));
+    });
+    return known.emplace(any);
+  }
   const Moments& values_of_tile(const Tile& tile, const ImageStack& stack, OfTile of) {
-    std::vector<Moments>& all = values_of_tile_[of.side];
-    all.resize(extent_.channels);
-    Moments& values = all[of.channel];
+    Moments& values = asked_for(of).values;
     if (values.count > 0) return values;
     for_each_element(tile, [&](std::size_t, std::size_t element, auto, auto, std::size_t c) {
       if (c != of.channel) return;
@@ -719,7 +733,7 @@ class FineTiles {
   std::vector<Candidates> candidates_;  // A tile's, of each group.
   ElementCounts counts_;
   std::vector<UnseenElement> unseen_;
-  std::array<std::vector<Moments>, sides_of_pair> values_of_tile_;  // By channel, where asked for.
+  std::array<std::vector<OfSide>, sides_of_pair> of_sides_;  // By channel, where asked for.
   FineFindings& found_;
   CoarseImages& coarse_;
   std::size_t alternating_;  // Index of the column's sums with alternating signs.
@@ -772,7 +786,7 @@ void offer_fine_cells(const FineCells& cells, RowRange rows, FineFindings& found
       tiles.take({extent, column * Tile::columns, y});
     }
     counts[column] = tiles.counts();
-    unseen[column] = tiles.unseen();
+    unseen[column] = tiles.take_unseen();
   });
   for (std::size_t column = 0; column < counts.size(); ++column) {
     found.counts.tested += counts[column].tested;
