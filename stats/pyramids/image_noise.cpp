@@ -110,6 +110,15 @@ PooledNoise::Moments PooledNoise::rare_cut_off(int octave) const {
   return moments_of({.count = common_.count}, &Bin::rare, octave);
 }
 
+int PooledNoise::bottom() const {
+  int depth = octaves - 1;
+  const auto large = [&](const Tail& tail) {
+    return tail[static_cast<std::size_t>(depth)].large.count;
+  };
+  while (depth > 0 && large(tails_[0]) + large(tails_[1]) == 0) --depth;
+  return top_ - depth;
+}
+
 double PooledNoise::rare(int octave) const {
   const int i = top_ - octave;
   if (i < 0 || i >= octaves) return 0;
@@ -173,7 +182,7 @@ NoisePyramid::Around NoisePyramid::around(const Rectangle& window, std::size_t c
     for (const PooledNoise* side : found.blocks.back()) {
       if (side->top() == PooledNoise::no_octave) continue;
       found.last = std::max(found.last, side->top());
-      found.first = std::min(found.first, side->top() - PooledNoise::octaves + 1);
+      found.first = std::min(found.first, side->bottom());
     }
   }
   // Without large values every octave is the same.
@@ -200,7 +209,8 @@ bool NoisePyramid::of_one_law(const Around& near, double toward) const {
       const double rate = root(beyond[0]) * std::sqrt(inverse(0));
       const double other = root(beyond[1]) * std::sqrt(inverse(1));
       const double error = std::sqrt(inverse(0) + inverse(1)) / 2;
-      if (toward * (rate - other) > errors_of_rates * error) return false;
+      const double errors = toward * (rate - other) / error;
+      if (errors > errors_of_rates || errors < -errors_of_signs) return false;
     }
     return true;
   });
@@ -216,7 +226,9 @@ double NoisePyramid::growth(const std::array<PooledNoise::Moments, sides_of_pair
   double largest = 0;
   for (std::size_t s = 0; s < sides_of_pair; ++s) {
     const double second = here[s].second * inverse(s);
-    if (third[s] > 0 && second > 0) largest = std::max(largest, (third[0] + third[1]) / second);
+    // Skewness of the other side takes away, and adds nothing.
+    const double own = std::min(third[s], third[0] + third[1]);
+    if (own > 0 && second > 0) largest = std::max(largest, own / second);
   }
   return largest;
 }

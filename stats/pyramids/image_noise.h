@@ -48,6 +48,7 @@ class PooledNoise {
   static constexpr int octaves = 16;
   static constexpr int no_octave = -100'000;  // top() without any.
   int top() const { return top_; }            // No large deviation is beyond +-2^top.
+  int bottom() const;                         // The lowest octave of a large one.
   double noisier() const { return noisier_; }
   // Number of rare deviations in this octave.
   double rare(int octave) const;
@@ -129,8 +130,9 @@ class NoisePyramid {
   // Two sides of one law have one variance, which is pooled (Student 1908), unless Welch's is
   // larger. What few replicates of one missed the other shows. So the blocks count only where the
   // sides have different laws in one of them. That is where one is noisier for its mean in too many
-  // elements (sign test). It is also where the darker has too many rare values beyond an octave. A
-  // reference has a law of its own, and what is held against it may lack values of either sign.
+  // elements (sign test). It is also where the darker has too many rare values beyond an octave, or
+  // far too few. A reference has a law of its own, and what is held against it may lack values of
+  // either sign.
   //
   // Between different laws a cell is no clearer than values allow that it never showed. They may be
   // as large as the noise of its neighbours.

@@ -107,6 +107,9 @@ TEST(NoisePyramid, HasTheVarianceOfEqualMeans) {
   EXPECT_NEAR(t(pyramid_of({rare, clean})), t_of(50), 1e-9);
   for (const int more : {60, 4})
     EXPECT_NEAR(t(pyramid_of({with_rare(8), with_rare(1)}, {16, 16}, more)), t_of(43.75), 1e-9);
+  // The brighter has far more, but smaller ones. Dark values of it are no skewness of the darker.
+  EXPECT_NEAR(t(pyramid_of({with_rare(4), with_rare(100, 4)})), t_of(50 - 0.64), 1e-9);
+  EXPECT_NEAR(t(pyramid_of({with_rare(18), with_rare(1, -50)})), t_of(50), 1e-9);
   // Values that are common in their elements tell no laws apart, and count with all others.
   EXPECT_NEAR(t(pyramid_of({rare, clean}, {16, 16}, 32, false)), alone, 1e-9);
   EXPECT_NEAR(t(pyramid_of({rare, clean}, {16, 16}, 60, false)),
