@@ -216,15 +216,6 @@ bool same_size(const reports::Sample& now, const reports::Sample& then) {
   return same;
 }
 
-/// Compares the observations that are not finite.
-bool same_nonfinite(const reports::Sample& now, const reports::Sample& then) {
-  const bool same = now.nonfinite == then.nonfinite;
-  if (same && now.nonfinite == 0) return true;
-  fmt::print("  {:<27} {}{}; mean and variance are of the others\n", "not finite", now.nonfinite,
-             same ? "" : fmt::format("   (recorded: {})", then.nonfinite));
-  return same;
-}
-
 /// Prints the new numbers. True if they equal the recorded ones to the last bit, except those made
 /// of seconds.
 bool print_comparison(const reports::Test& now, const reports::Test& then, bool timed) {
@@ -234,13 +225,18 @@ bool print_comparison(const reports::Test& now, const reports::Test& then, bool 
                                          reports::to_string(then.verdict), then.message)));
   }
   for (std::size_t i = 0; i < now.samples.size() && i < then.samples.size(); ++i) {
-    same &= same_size(now.samples[i], then.samples[i]);
-    same &= same_nonfinite(now.samples[i], then.samples[i]);
+    const reports::Sample& is = now.samples[i];
+    const reports::Sample& was = then.samples[i];
+    same &= same_size(is, was);
+    const auto count = [](const reports::Sample& x) { return static_cast<double>(x.nonfinite); };
+    if (count(is) + count(was) > 0) {
+      same &=
+          same_line("not finite", count(is), count(was), "; mean and variance are of the others");
+    }
     // A cell's number has neither mean nor variance.
-    if (now.samples[i].channel == cell_channel) continue;
-    same &= same_line("mean", now.samples[i].mean, then.samples[i].mean);
-    same &=
-        same_line("variance of an observation", now.samples[i].variance, then.samples[i].variance);
+    if (is.channel == cell_channel) continue;
+    same &= same_line("mean", is.mean, was.mean);
+    same &= same_line("variance of an observation", is.variance, was.variance);
   }
   for (std::size_t i = 0; i < now.channels.size() && i < then.channels.size(); ++i) {
     fmt::print("test {} on {}\n", now.method, now.channels[i].name);
