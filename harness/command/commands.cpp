@@ -250,12 +250,10 @@ int run_suites(const std::vector<Suite>& suites, const RunOptions& options, cons
   std::set<std::string> told;  // ids
   std::map<std::string, std::string> errors;
   RunOptions drawn = options;
-  std::shared_ptr<Ranks> ranks;
   if (options.ranks != nullptr) {
     drawn.threads = threads_of_rank(options);
-    ranks = std::make_shared<Ranks>(*options.ranks, options.seed, identity_of(suites, options),
-                                    drawn.threads);
-    drawn.executor = ranks;
+    drawn.executor = std::make_shared<Ranks>(*options.ranks, options.seed,
+                                             identity_of(suites, options), drawn.threads);
   }
   std::shared_ptr<Checkpoint> checkpoint;
   if (!options.checkpoint.empty()) {
@@ -274,7 +272,6 @@ int run_suites(const std::vector<Suite>& suites, const RunOptions& options, cons
   last.tells_code = output.tells_code && ledger_fault.empty() && !interrupted();
   write_run(record, last, told);
   keep_last_run(record, output.detail > 0);
-  if (ranks && output.detail > 1) say_beside_progress(ranks->window_text());
   if (checkpoint && !interrupted()) checkpoint->remove();
   if (!ledger_fault.empty()) throw std::runtime_error(ledger_fault);
   const int code = exit_code(record, output.inconclusive);

@@ -24,7 +24,6 @@ enum class Kind : std::uint8_t { begin, batch, forget, end, hello, reply, failed
 constexpr std::size_t most_batches = 2;
 constexpr double seconds_of_batch = .005;
 constexpr double most_blocks = 64;
-constexpr double megabyte = 1e6;
 // Limits in seconds, and how many times the usual time a rank may take.
 constexpr double patience = 60;
 constexpr double least_wait = 1;
@@ -186,7 +185,7 @@ class Ranks::Window {
   /// The rank that has the next block.
   int holder() const { return slots_.front().holder; }
   bool is_full(std::size_t arriving) const {
-    return !empty() && waiting_.bytes + arriving >= ranks_.window_bytes_;
+    return !empty() && waiting_bytes_ + arriving >= ranks_.window_bytes_;
   }
 
   /// Takes slots for a rank with so many threads, of `workers` in all.
@@ -252,7 +251,7 @@ class Ranks::Window {
     for (; !empty() && slots_.front().drawn; slots_.pop_front(), ++front_) {
       Slot& slot = slots_.front();
       round_.fold(slot.task, std::move(*slot.drawn));
-      waiting_ = {waiting_.blocks - 1, waiting_.bytes - slot.bytes};
+      waiting_bytes_ -= slot.bytes;
       folded = true;
     }
     return folded;
@@ -281,9 +280,7 @@ class Ranks::Window {
   void keep(Slot& slot, Pool::Block block, std::size_t bytes) {
     slot.drawn = std::make_unique<Pool::Block>(std::move(block));
     slot.bytes = bytes;
-    waiting_ = {waiting_.blocks + 1, waiting_.bytes + bytes};
-    Waiting& most = ranks_.most_waiting_;
-    most = {std::max(most.blocks, waiting_.blocks), std::max(most.bytes, waiting_.bytes)};
+    waiting_bytes_ += bytes;
   }
 
   void give_to(int rank, std::uint64_t number) {
@@ -333,7 +330,7 @@ class Ranks::Window {
   std::deque<Slot> slots_;
   std::uint64_t front_ = 0;        ///< number of the first slot
   std::deque<std::uint64_t> own_;  ///< not begun, of pools that this rank alone can draw
-  Waiting waiting_ = {};
+  std::size_t waiting_bytes_ = 0;  ///< of drawn blocks that wait for an earlier one
 };
 
 Ranks::Ranks(Messages& messages, std::optional<std::uint64_t> seed, Identity identity,
@@ -495,14 +492,6 @@ void Ranks::draw(Round& round) {
     if (!each.recipes.empty()) messages_.send(rank, packed(Kind::forget));
     each.recipes.clear();
   }
-}
-
-std::string Ranks::window_text() const {
-  return fmt::format(
-      "at most {} blocks, {:.3g} MB, waited on rank 0 for an earlier one; its window closes at "
-      "{:.3g} MB",
-      most_waiting_.blocks, static_cast<double>(most_waiting_.bytes) / megabyte,
-      static_cast<double>(window_bytes_) / megabyte);
 }
 
 bool dismiss(Messages& messages) try {

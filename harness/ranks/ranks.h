@@ -64,8 +64,6 @@ class Ranks final : public Executor {
   /// Waits for the ranks. Refuses by name one of another run, and one that could not prepare.
   void introduce(const NamedSetups& setups) override;
   void draw(Round& round) override;
-  /// The most that the window had to hold, for `-vv`.
-  std::string window_text() const;
 
  private:
   using Clock = std::chrono::steady_clock;
@@ -81,12 +79,6 @@ class Ranks final : public Executor {
     std::uint64_t round;
     std::vector<std::uint64_t> slots;
     Clock::time_point sent;
-  };
-
-  /// Blocks that wait for an earlier one.
-  struct Waiting {
-    std::size_t blocks = 0;
-    std::size_t bytes = 0;
   };
 
   std::string name_of(int rank) const;
@@ -105,7 +97,6 @@ class Ranks final : public Executor {
   std::map<std::uint64_t, Batch> batches_;  ///< by number; may be of earlier rounds
   std::uint64_t next_batch_ = 0;
   std::uint64_t round_ = 0;
-  Waiting most_waiting_ = {};
 };
 
 /// Rank 0 says that nothing more is to be drawn. False if a rank does not answer.
