@@ -220,7 +220,6 @@ reports::LedgerSeries keep(LedgerBook& book, const reports::Record& record, cons
 // ---- The ledger as text
 
 constexpr const char* version_words = "assay-ledger 2 budget ";
-constexpr const char* earlier_words = "assay-ledger 1 ";
 
 constexpr const char* introduction[] = {
     "# Evidence of nights with fresh seeds about each claim (harness/README.md, \"The ledger\").",
@@ -449,12 +448,6 @@ class LedgerReader {
       : file_(std::move(file)), lines_(lines_of(text)) {}
 
   LedgerBook read() {
-    if (!lines_.empty() && lines_[0].starts_with(earlier_words)) {
-      refuse(fmt::format(
-          "an earlier version of assay wrote this ledger, whose nights do not pool with new ones; "
-          "keep it under another name, and the next run begins anew: mv {0} {0}.1",
-          file_));
-    }
     if (lines_.empty() || !lines_[0].starts_with(version_words)) {
       refuse(
           "this is no ledger of this version: its first line must be `assay-ledger 2 budget B`; "
@@ -491,7 +484,8 @@ class LedgerReader {
         mend());
   }
 
-  /// A series or a night is sound if adding what was read of it writes the line again.
+  /// A series or a night is sound if its check is right, and adding what was read of it writes the
+  /// line again.
   void take(const std::string& line) {
     if (line.empty() || line.starts_with("#")) return book_.keep(line);
     if (line.starts_with("begin ")) return take_begin(line);
@@ -533,9 +527,6 @@ class LedgerReader {
     fields >> word >> series.weight;
     series.test = unquoted(fields);
     series.channel = unquoted(fields);
-    if (!(series.reference_error.value_or(0) >= 0) || !(series.weight > 0 && series.weight <= 1)) {
-      changed();
-    }
     book_.open(series);
   }
 
@@ -546,27 +537,18 @@ class LedgerReader {
     std::string word;
     fields >> word >> night.date >> word >> night.seed >> word >> night.commit >> word >> of.hash;
     fields >> word;
-    bool is_possible = false;
     if (word == "estimate") {
       auto& value = night.value.emplace<stats::NightEstimate>();
       fields >> value.difference >> word >> value.standard_error >> word >> value.observations;
       fields >> word >> value.effective;
-      is_possible = value.standard_error >= 0 && value.observations > 0 && value.effective >= 1;
     } else {
-      auto& log_p = night.value.emplace<NightLogP>();
-      fields >> log_p;
-      is_possible = log_p <= 0;
+      fields >> night.value.emplace<NightLogP>();
     }
     of.test = unquoted(fields);
     of.channel = unquoted(fields);
-    if (!is_possible) changed();
     const auto series = book_.open_series(of);
     if (!series) refuse("no open series above has this night's hash and test" + mend());
     night.series = *series;
-    if (book_.series_[night.series].has_estimates() !=
-        std::holds_alternative<stats::NightEstimate>(night.value)) {
-      changed();
-    }
     book_.add(night);
   }
 

@@ -136,8 +136,6 @@ TEST(LedgerBook, RefusesWhatIsNoLedger) {
   EXPECT_THAT(refused("suite: a\n"), HasSubstr("n.ledger:1:1"));
   EXPECT_THAT(refused("assay-ledger 2 budget 0\nend 0\n"), HasSubstr("from 1e-9 to 0.5"));
   EXPECT_THAT(refused("assay-ledger 2 budget nan\nend 0\n"), HasSubstr("from 1e-9 to 0.5"));
-  EXPECT_THAT(refused("assay-ledger 1 budget 0.01\nend 0\n"),
-              HasSubstr("begins anew: mv n.ledger n.ledger.1"));
   std::vector<std::string> lines = tests::lines(example().text());
   lines.push_back("begin \"suite/other\"");
   EXPECT_THAT(refused(joined(lines)), HasSubstr("has no test \"suite/other\""));
