@@ -186,26 +186,6 @@ std::string in_header(const std::string& name) {
   return fmt::format("\"{}\"", boost::replace_all_copy(name, "\"", "\"\""));
 }
 
-/// A source's channels: all of an estimator, or a part of it. The cells of a sampler's draws are
-/// computed here.
-Subject sampled_by(Source source, const Estimators& estimators, std::uint64_t seed) {
-  const std::string cell = "." + cell_channel;
-  if (!source.part.ends_with(cell)) {
-    Subject sampled = values(source, estimators);
-    if (source.part.empty()) sampled.channels = {0, 1, sampled.setup->channel_count()};
-    return sampled;
-  }
-  source.part.resize(source.part.size() - cell.size());
-  Subject sampled = draws(source, estimators, Draws::cells);
-  seed_cells(sampled, source.where, seed);
-  try {
-    dynamic_cast<const SamplerSetup&>(*sampled.setup).density_cells();
-  } catch (const std::domain_error& error) {
-    refuse(source.where, error.what());
-  }
-  return sampled;
-}
-
 }  // namespace
 
 std::vector<Suite> load_suites(const std::vector<std::string>& files,
@@ -370,7 +350,8 @@ int sample(const SampleArguments& arguments) {
   const std::vector<EstimatorEntry> entries = estimators_of(
       {source}, arguments.estimators, arguments.primaries, "assay sample " + arguments.source);
   const Estimators estimators{{source.estimator, prepare(entries.front(), ".")}};
-  const Subject sampled = sampled_by(source, estimators, arguments.seed);
+  Subject sampled = values(source, estimators);
+  if (source.part.empty()) sampled.channels = {0, 1, sampled.setup->channel_count()};
   const PreparedEstimator& estimator = *sampled.estimator;
   const auto rows = sampled.setup->observations();
   if (sampled.setup->is_reference()) {
