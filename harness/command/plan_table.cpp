@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <utility>
 
 #include "harness/command/commands.h"
 #include "harness/command/help.h"
@@ -16,14 +15,11 @@
 namespace assay::harness {
 namespace {
 
-constexpr std::size_t most_gates = 3;
 constexpr const char* unknown = "-";
 
-// Method, primaries, looks, last, in all, rays, CPU time, effect.
-constexpr std::size_t column_count = 8;
+constexpr std::size_t column_count = 7;
 using Cells = std::array<std::string, column_count>;
-const Cells headings{"method", "primaries", "looks",    "last",
-                     "in all", "rays",      "CPU time", "effect"};
+const Cells headings{"primaries", "looks", "last", "in all", "rays", "CPU time", "effect"};
 
 struct Row {
   std::string name;
@@ -86,13 +82,9 @@ std::string effect_text(const TestOutcome& test, const Forecast& forecast) {
 
 /// Notes the gates that are not green.
 void note_gates(const std::vector<Gate>& gates, std::vector<std::string>& notes) {
-  std::size_t count = 0;
   for (const Gate& gate : gates) {
-    if (gate.state == "green" || ++count > most_gates) continue;
-    notes.push_back(gate.state + ": " + gate_sentence(gate));
+    if (gate.state != "green") notes.push_back(gate.state + ": " + gate_sentence(gate));
   }
-  if (count > most_gates)
-    notes.push_back(fmt::format("{} more gates that are not green", count - most_gates));
 }
 
 std::string per_cent(double probability) {
@@ -128,9 +120,9 @@ Row row_of(const TestOutcome& test, const Pilots& pilots) {
     total.add(side, plan.primaries[i], side.secondaries(plan.most_secondaries()), pilots);
   }
   const Forecast expected = forecast(test, pilots);
-  Row row{.name = test.question.test->name, .not_ok = not_ok(test, expected)};
-  row.cells = {plan.method.name,
-               primaries_text(plan),
+  const std::string by = plan.method.name.empty() ? "" : ", by " + plan.method.name;
+  Row row{.name = test.question.test->name + by, .not_ok = not_ok(test, expected)};
+  row.cells = {primaries_text(plan),
                fmt::format("{}", plan.looks.sizes.size()),
                count_of(static_cast<double>(plan.most_secondaries())),
                count_of(total.primaries),
@@ -157,19 +149,11 @@ std::string on_page(const std::string& text, std::size_t indent = 0) {
   return reports::plain_spaces(wrapped(reports::one_line(text), indent));
 }
 
-/// True if lines with such gaps between the columns fit the page.
-bool fit(const std::array<int, column_count>& widths, int gap) {
-  int wide = 4 - gap;
-  for (const int width : widths) wide += width + gap;
-  return wide <= static_cast<int>(page_width());
-}
-
 std::string line_of(const Cells& cells, const std::array<int, column_count>& widths) {
-  const std::string gap = fit(widths, 2) ? "  " : " ";
-  std::string line = "    " + reports::pad_right(cells[0], widths[0]);
-  for (std::size_t c = 1; c < column_count; ++c) {
-    const auto blanks = static_cast<std::size_t>(widths[c] - reports::columns(cells[c]));
-    line += gap + std::string(blanks, ' ') + cells[c];
+  std::string line = "  ";
+  for (std::size_t c = 0; c < column_count; ++c) {
+    const auto blanks = static_cast<std::size_t>(2 + widths[c] - reports::columns(cells[c]));
+    line += std::string(blanks, ' ') + cells[c];
   }
   return line + "\n";
 }
@@ -204,13 +188,7 @@ void write(std::string& page, const SuiteRun& run) {
     widths[c] = reports::columns(headings[c]);
     for (const Row& row : rows) widths[c] = std::max(widths[c], reports::columns(row.cells[c]));
   }
-  Cells heads = headings;
-  if (!fit(widths, 1)) {
-    for (Row& row : rows) row.name += ", by " + std::exchange(row.cells[0], "");
-    heads[0].clear();
-    widths[0] = 0;
-  }
-  page += line_of(heads, widths);
+  page += line_of(headings, widths);
   double not_ok = 0;
   for (const Row& row : rows) {
     page += on_page(row.name, 2);

@@ -598,7 +598,7 @@ def plan_cell(bench, cell, live):
         return
     expect(ended.code in (0, 1), "exit code 1 or 0", f"{ended.code}: {ended.err}")
     for test in live.tests:
-        expect(re.search(rf"^  {test}$", ended.out, re.MULTILINE), f"a row of `{test}`", ended.out)
+        expect(re.search(rf"^  {test}(, by .*)?$", ended.out, re.MULTILINE), f"a row of `{test}`", ended.out)
     require_message(cell, " ".join(ended.out.split()), index, cell.name)
 
 

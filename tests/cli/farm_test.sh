@@ -150,7 +150,7 @@ SUITE
   [ "$(wc -l <out)" = 512 ] || fail "$(wc -l <out) renders of the pilot"
   expect 0 plan text.yaml
   local last
-  last=$(awk '$1 == "t" && NF > 5 { print $5 }' out)
+  last=$(awk '/, by t$/ { getline; print $4 }' out)
   [ "$last" -gt 512 ] || fail 'no last look'
   expect 0 plan text.yaml --list-renders
   [ "$(wc -l <out)" = "$last" ] || fail "$(wc -l <out) renders, and the last look has $last"
