@@ -74,7 +74,6 @@ Recorded find_test(const reports::Record& record, const std::string& file,
       if (without_blanks(test.id).find(asked) != std::string::npos) parts.push_back(all.back());
     }
   }
-  if (named.size() == 1) return named.front();
   // Without a name it is the one that is not as it should be.
   const auto has_alarm = [&](const reports::Test& test) {
     return std::ranges::any_of(record.ledger.series, [&](const reports::LedgerSeries& series) {
@@ -85,19 +84,12 @@ Recorded find_test(const reports::Record& record, const std::string& file,
   std::ranges::copy_if(parts, std::back_inserter(broken),
                        [&](const Recorded& each) { return !each.test.ok || has_alarm(each.test); });
   if (name.empty() && !broken.empty()) parts.swap(broken);
+  const std::vector<Recorded>& matching = named.empty() ? parts : named;
   const Location where{.file = file};
-  if (!named.empty()) {
-    refuse(where, "{} tests have the name `{}`; give the id of one: {}", named.size(), name,
-           some_ids(named));
-  }
-  if (parts.size() == 1) return parts.front();
-  if (!parts.empty() && name.empty()) {
-    refuse(where, "{} tests match; give the id of one, or a part of it: {}", parts.size(),
-           some_ids(parts));
-  }
-  if (!parts.empty()) {
-    refuse(where, "{} tests have `{}` in their id; give more of one: {}", parts.size(), name,
-           some_ids(parts));
+  if (matching.size() == 1) return matching.front();
+  if (!matching.empty()) {
+    refuse(where, "{} tests match{}; give the id of one, or more of it: {}", matching.size(),
+           name.empty() ? "" : " `" + name + "`", some_ids(matching));
   }
   if (all.empty()) refuse(where, "this run has no test");
   const std::string near = meant(name, all);

@@ -554,7 +554,7 @@ test_explain_tells_of_the_last_run() {
   expect 0 explain run.json mixed/wrong
   contains out 'The claim is wrong.'
   expect 2 explain mixed/
-  contains err '3 tests have `mixed/` in their id'
+  contains err '3 tests match `mixed/`'
   expect 2 explain mixed/wrnog
   contains err 'mixed/wrong'
   contains err 'another run is kept by `--report json=FILE`: give FILE before the test'

@@ -139,7 +139,7 @@ TEST_F(Replays, UsesTheSeedOfTheTestsOwnSuite) {
       place.write("run.json", reports::json(run_files({one, two}, repeatable)));
   EXPECT_EQ(said({.record = file, .test = "two/mean"}).code, 0);
   EXPECT_EQ(refusal([&] { replay({.record = file, .test = "mean"}); }),
-            "2 tests have the name `mean`; give the id of one: `one/mean`, `two/mean`");
+            "2 tests match `mean`; give the id of one, or more of it: `one/mean`, `two/mean`");
 }
 
 TEST_F(Replays, PrintsTheValueThatWasDrawn) {
