@@ -27,10 +27,6 @@ std::vector<CarriedFile> files_of(const std::string& kind) {
   return files;
 }
 
-bool is_there(const CarriedFile& file, const std::filesystem::path& path) {
-  return bytes_of(path.string()) == file.text;
-}
-
 }  // namespace
 
 std::vector<std::string> kinds_of_example() {
@@ -66,7 +62,7 @@ int write_example(const InitArguments& arguments) try {
   const std::vector<CarriedFile> files = files_of(arguments.kind);
   for (const CarriedFile& file : files) {
     const std::filesystem::path path = folder / file.path;
-    if (file.path == next_steps || !std::filesystem::exists(path) || is_there(file, path)) continue;
+    if (file.path == next_steps || !std::filesystem::exists(path)) continue;
     refuse({}, "`{}` exists already, so nothing is written; name another folder", path.string());
   }
   std::string steps;
@@ -78,11 +74,9 @@ int write_example(const InitArguments& arguments) try {
       continue;
     }
     const std::filesystem::path path = folder / file.path;
-    const bool kept = is_there(file, path);
     std::filesystem::create_directories(path.parent_path());
-    if (!kept) write_whole(path, file.text);
-    fmt::print("{} {}\n", kept ? "kept" : "wrote",
-               (arguments.folder == "." ? path.lexically_normal() : path).string());
+    write_whole(path, file.text);
+    fmt::print("wrote {}\n", (arguments.folder == "." ? path.lexically_normal() : path).string());
   }
   fmt::print("{}", steps);
   return 0;

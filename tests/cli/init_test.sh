@@ -97,17 +97,6 @@ gitlab .gitlab-ci.yml
 FILES
 }
 
-# Two kinds may write one and the same file.
-test_init_writes_beside_another_example() {
-  expect 0 init github both
-  expect 0 init gitlab both
-  [ -e both/.gitlab-ci.yml ] && [ -e both/.github/workflows/assay.yml ] || fail 'a file is missing'
-  lacks out 'wrote both/claims/mine.yaml'
-  echo '# mine' >>both/claims/mine.yaml
-  expect 2 init gitlab both
-  contains err '`both/claims/mine.yaml` exists already, so nothing is written'
-}
-
 test_init_names_its_kinds() {
   expect 2 init
   contains err '`assay init` needs one of github, gitlab, gtest, plugin, process c++, process python, suite'
