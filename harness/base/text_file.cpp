@@ -114,25 +114,18 @@ fs::path behind_links(const fs::path& path) {
 
 // ---- Locks
 
-constexpr std::chrono::milliseconds longest_pause(50);
-constexpr std::chrono::milliseconds told_after(3000);
-
 void wait_for_lock(const OpenFile& file) {
   const std::string path = file.path().string();
-  std::chrono::milliseconds waited(0);
-  bool told = false;
-  while (::flock(file.descriptor(), LOCK_EX | LOCK_NB) != 0) {
+  for (int tries = 0; ::flock(file.descriptor(), LOCK_EX | LOCK_NB) != 0; ++tries) {
     if (errno == EINTR) continue;
     if (errno != EWOULDBLOCK) fail("lock", path, errno);
     if (interrupted()) {
       throw std::runtime_error(fmt::format("cannot lock {}: the wait was interrupted", path));
     }
-    if (waited > told_after && !std::exchange(told, true)) {
+    if (tries == 300) {
       say_beside_progress(fmt::format("waiting for another run that writes {}", path));
     }
-    const auto pause = std::clamp(waited, std::chrono::milliseconds(1), longest_pause);
-    std::this_thread::sleep_for(pause);
-    waited += pause;
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
   }
 }
 
