@@ -27,7 +27,8 @@ std::size_t end_of_piece(const std::string& text, std::size_t begin) {
 }
 
 constexpr const char* wipe = "\r\033[K";
-constexpr auto bar_period = 100ms;
+constexpr std::chrono::milliseconds bar_period = 100ms;
+constexpr std::chrono::milliseconds line_period = 1min;
 
 // Guards every line that is written to the terminal.
 std::mutex terminal;
@@ -94,7 +95,7 @@ std::string progress_text(const Phase& phase, std::uint64_t done) {
   return fmt::format("{}{} %", name, static_cast<int>(100 * fraction(phase, done)));
 }
 
-std::string ProgressLines::text(std::uint64_t done) const {
+std::string ProgressLine::text(std::uint64_t done) const {
   const std::chrono::duration<double> all = shown_ - first_, here = shown_ - began_;
   const double part = fraction(phase_, done);
   std::string left;
@@ -104,34 +105,31 @@ std::string ProgressLines::text(std::uint64_t done) const {
                      all.count());
 }
 
-void ProgressLines::advance(std::uint64_t done) {
-  if (now_() - shown_ < 1min) return;
-  shown_ = now_();
-  say_beside_progress(text(done), out_);
+void ProgressLine::begin(const Phase& phase) {
+  phase_ = phase;
+  began_ = now_();
+  if (redraws_) draw(0);
 }
 
-void ProgressBar::begin(const Phase& phase) {
-  ProgressLines::begin(phase);
-  draw(0);
+void ProgressLine::advance(std::uint64_t done) {
+  if (now_() - shown_ >= (redraws_ ? bar_period : line_period)) draw(done);
 }
 
-void ProgressBar::advance(std::uint64_t done) {
-  if (now_() - shown_ >= bar_period) draw(done);
-}
-
-void ProgressBar::draw(std::uint64_t done) {
+void ProgressLine::draw(std::uint64_t done) {
   if (phase_.total == 0) return;
+  shown_ = now_();
+  if (!redraws_) return say_beside_progress(text(done), out_);
   constexpr int widest = 30;
   const std::scoped_lock lock(terminal);
   bar_on = &out_;
-  shown_ = now_();
   // The last column stays free: some terminals begin a line after it.
   const int width = width_() - 1;
   const std::string filled = bar(fraction(phase_, done), std::min(widest, width / 3));
   out_ << wipe << reports::shorten(filled + " " + text(done), width) << std::flush;
 }
 
-void ProgressBar::end() {
+void ProgressLine::end() {
+  if (!redraws_) return;
   const std::scoped_lock lock(terminal);
   wipe_bar();
   bar_on = nullptr;
@@ -154,8 +152,7 @@ std::unique_ptr<Progress> make_progress(bool quiet) {
   if (quiet) return std::make_unique<Progress>();
   const bool redraws = isatty(STDERR_FILENO) && system_environment("TERM") != "dumb" &&
                        system_environment("CI").empty();
-  if (redraws) return std::make_unique<ProgressBar>(std::cerr);
-  return std::make_unique<ProgressLines>(std::cerr);
+  return std::make_unique<ProgressLine>(std::cerr, redraws);
 }
 
 }  // namespace assay::harness

@@ -34,42 +34,32 @@ std::string in_lines(const std::string& sentence);
 
 using Clock = std::function<std::chrono::steady_clock::time_point()>;
 
-/// A line a minute, for what does not redraw lines: "assay: pilot  43 % (80 s left)  60 s".
-class ProgressLines : public Progress {
+/// How far the work is: "pilot  43 % (80 s left)  60 s", with the time left of a phase and the time
+/// of all. A terminal gets a bar that redraws itself, ten times a second at most, and never
+/// scrolls. What does not redraw lines gets a line a minute.
+class ProgressLine final : public Progress {
  public:
-  explicit ProgressLines(std::ostream& out, Clock now = std::chrono::steady_clock::now)
-      : out_(out), now_(std::move(now)), first_(now_()), shown_(first_) {}
-  void begin(const Phase& phase) override { phase_ = phase, began_ = now_(); }
-  void advance(std::uint64_t done) override;
-
- protected:
-  /// "pilot  43 % (80 s left)  60 s", with the time left of this phase and the time of all.
-  std::string text(std::uint64_t done) const;
-
-  std::ostream& out_;
-  Clock now_;
-  Phase phase_ = {};
-  std::chrono::steady_clock::time_point first_;  ///< start of all phases
-  std::chrono::steady_clock::time_point began_;  ///< start of this phase
-  std::chrono::steady_clock::time_point shown_;
-};
-
-/// A line on standard error that redraws itself, ten times a second at most. It never scrolls.
-class ProgressBar final : public ProgressLines {
- public:
-  explicit ProgressBar(
-      std::ostream& out, Clock now = std::chrono::steady_clock::now,
+  ProgressLine(
+      std::ostream& out, bool redraws, Clock now = std::chrono::steady_clock::now,
       std::function<int()> width = [] { return terminal_width(stderr); })
-      : ProgressLines(out, std::move(now)), width_(std::move(width)) {}
-  ~ProgressBar() override { ProgressBar::end(); }
+      : out_(out), redraws_(redraws), now_(std::move(now)), width_(std::move(width)) {}
+  ~ProgressLine() override { ProgressLine::end(); }
   void begin(const Phase& phase) override;
   void advance(std::uint64_t done) override;
-  void end() override;  ///< wipes the line
+  void end() override;  ///< wipes the bar
 
  private:
+  std::string text(std::uint64_t done) const;
   void draw(std::uint64_t done);
 
+  std::ostream& out_;
+  bool redraws_;
+  Clock now_;
   std::function<int()> width_;
+  Phase phase_ = {};
+  std::chrono::steady_clock::time_point first_ = now_();  ///< start of all phases
+  std::chrono::steady_clock::time_point began_ = first_;  ///< start of this phase
+  std::chrono::steady_clock::time_point shown_ = first_;
 };
 
 /// Writes a line "assay: …" to standard error. A progress line is wiped first and drawn again

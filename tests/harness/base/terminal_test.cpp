@@ -30,7 +30,7 @@ struct Bar {
   std::ostringstream out = {};
   Hands hands = {};
   int width = 80;
-  ProgressBar bar{out, hands.clock(), [this] { return width; }};
+  ProgressLine bar{out, true, hands.clock(), [this] { return width; }};
 
   std::string last() const { return out.str().substr(out.str().rfind("\033[K") + 3); }
 };
@@ -63,7 +63,7 @@ TEST(ProgressBar, TellsTheTimeOfAllPhasesAndWipesItself) {
 
 TEST(ProgressBar, IsWipedWhereAMistakeEndsTheRun) {
   std::ostringstream out;
-  { ProgressBar(out).begin({.total = 4, .unit = "claims"}); }
+  { ProgressLine(out, true).begin({.total = 4, .unit = "claims"}); }
   EXPECT_TRUE(out.str().ends_with("\r\033[K"));
   const std::string all = out.str();
   std::ostringstream other;
@@ -74,7 +74,7 @@ TEST(ProgressBar, IsWipedWhereAMistakeEndsTheRun) {
 TEST(ProgressLines, AreOneAMinute) {
   std::ostringstream out;
   Hands hands;
-  ProgressLines lines(out, hands.clock());
+  ProgressLine lines(out, false, hands.clock());
   lines.begin({.total = 150, .unit = "claims"});
   for (std::uint64_t i = 0; i < 150; ++i, hands.time += 1s) lines.advance(i);
   EXPECT_EQ(out.str(), "assay: 60 of 150 claims  60 s\nassay: 120 of 150 claims  120 s\n");
