@@ -80,13 +80,6 @@ std::string effect_text(const TestOutcome& test, const Forecast& forecast) {
   return text.starts_with(factor) ? "×" + text.substr(factor.size()) : text;
 }
 
-/// Notes the gates that are not green.
-void note_gates(const std::vector<Gate>& gates, std::vector<std::string>& notes) {
-  for (const Gate& gate : gates) {
-    if (gate.state != "green") notes.push_back(gate.state + ": " + gate_sentence(gate));
-  }
-}
-
 std::string per_cent(double probability) {
   return fmt::format("{} %", reports::human(100 * std::round(1e6 * probability) / 1e6, 3));
 }
@@ -136,7 +129,9 @@ Row row_of(const TestOutcome& test, const Pilots& pilots) {
     const char* off = plan.regions[0].proof() ? "if it is barely wrong" : "if off by `detect`";
     row.notes.push_back(outlook_text(off, *expected.if_off));
   }
-  note_gates(plan.gates, row.notes);
+  for (const Gate& gate : plan.gates) {
+    if (gate.state != "green") row.notes.push_back(gate.state + ": " + gate_sentence(gate));
+  }
   if (!plan.caution.empty()) row.notes.push_back(plan.caution);
   if (!plan.invalid.empty()) row.notes.push_back("invalid: " + plan.invalid.text);
   if (const std::string trouble = trouble_of(test); !trouble.empty()) {
