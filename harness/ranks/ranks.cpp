@@ -86,8 +86,6 @@ class Servant {
   }
 
  private:
-  static constexpr std::uint64_t most_pools = std::uint64_t{1} << 20;
-
   /// Pools of a round by rank 0's recipes, and who draws their blocks.
   struct DrawnRound {
     SomePools pools = {};
@@ -124,11 +122,10 @@ class Servant {
     messages_.send(0, packed(Kind::reply, number, seconds_since(start), blocks));
   }
 
+  /// Rank 0 has seen that its set-ups are those of this rank.
   void add(const NamedRecipe& named) {
     const auto setup =
         std::ranges::find(prepared_.setups, named.setup, &NamedSetups::value_type::first);
-    Unpacker::require(setup != prepared_.setups.end() && named.pool < most_pools,
-                      "a recipe for no set-up");
     // Estimators count in cells that are there when they are made (run/looks.cpp).
     const auto* const draws = dynamic_cast<const SamplerSetup*>(setup->second.get());
     const bool counts =
@@ -140,11 +137,6 @@ class Servant {
   }
 
   std::vector<std::string> drawn(const std::vector<Task>& orders) {
-    const SomePools& pools = round_->pools;
-    for (const Task& order : orders) {
-      Unpacker::require(order.pool < pools.size() && pools[order.pool] && order.first < order.last,
-                        "an order for no pool");
-    }
     std::vector<std::string> blocks(orders.size());
     with_threads(prepared_.threads, [&] {
       on_all_threads(orders.size(),
