@@ -46,7 +46,7 @@ void add_report(Options& options, Output& output, const std::string& kinds) {
   Texts words = mapped(reports::report_formats(), &reports::ReportFormat::kind);
   for (std::string& word : words) word += '=';
   options.add(
-      {"--report", "KIND=PATH", Replay::nowhere, "", words}, output.reports,
+      {"--report", "KIND=PATH", Replay::no, "", words}, output.reports,
       report_beside(output.reports),
       kinds +
           ", to a file or, as -, to standard output; repeatable; default console=-, which moves to "
@@ -56,37 +56,37 @@ void add_report(Options& options, Output& output, const std::string& kinds) {
 void add_output(Options& options, Output& output) {
   add_report(options, output, "console, json, junit, markdown, html or metrics (OpenMetrics)");
   options.add(
-      {"--color", "WHEN", Replay::nowhere}, output.colour,
+      {"--color", "WHEN", Replay::no}, output.colour,
       OneOf<Colour>{
           {{"auto", Colour::automatic}, {"always", Colour::always}, {"never", Colour::never}}},
       "auto, always or never; default auto: on a terminal, unless NO_COLOR or FORCE_COLOR is set");
-  options.flag({"-v", "", Replay::nowhere},
+  options.flag({"-v", "", Replay::no},
                "print a line for each test; -vv, or -v of a single test, prints all numbers of "
                "tests that need attention; default a line for each suite",
                [&output] { ++output.detail; });
-  options.add({"--durations", "N", Replay::nowhere}, output.slowest, at_least(1),
+  options.add({"--durations", "N", Replay::no}, output.slowest, at_least(1),
               "name the N slowest tests; default none");
 }
 
 void add_inconclusive(Options& options, Output& output) {
-  options.add({"--inconclusive", "fail|pass", Replay::nowhere}, output.inconclusive,
+  options.add({"--inconclusive", "fail|pass", Replay::no}, output.inconclusive,
               OneOf<InconclusivePolicy>{
                   {{"fail", InconclusivePolicy::fail}, {"pass", InconclusivePolicy::pass}}},
               "count undecided tests as failed or passed; default neither: exit code 3, and "
               "skipped in junit");
-  options.add({"--github", "auto|never", Replay::nowhere}, output.github,
+  options.add({"--github", "auto|never", Replay::no}, output.github,
               OneOf<bool>{{{"auto", true}, {"never", false}}},
               "annotations and job summary of GitHub Actions; default auto: if GITHUB_ACTIONS is "
               "true");
 }
 
 void add_threads(Options& options, unsigned& threads) {
-  options.add({"--threads", "N", Replay::nowhere}, threads, read_threads,
+  options.add({"--threads", "N", Replay::no}, threads, read_threads,
               "threads; default one for each core");
 }
 
 void add_quiet(Options& options, Output& output) {
-  options.flag({"--quiet", "", Replay::nowhere}, "no progress on standard error; default shown",
+  options.flag({"--quiet", "", Replay::no}, "no progress on standard error; default shown",
                [&output] { output.quiet = true; });
 }
 
@@ -97,8 +97,8 @@ struct Running {
 };
 
 void add_sampling(Options& options, SamplingCommand& command, const Running& about) {
-  options.add({"--seed", "N|random", Replay::nowhere, "", {"random"}}, command.options.seed,
-              read_seed, about.seed);
+  options.add({"--seed", "N|random", Replay::no, "", {"random"}}, command.options.seed, read_seed,
+              about.seed);
   add_threads(options, command.options.threads);
   options.add({"--alpha", "A"}, command.options.alpha, read_error_rate, about.alpha);
   add_quiet(options, command.output);
@@ -112,27 +112,27 @@ void add_running(Options& options, SamplingCommand& command, const Running& abou
 }
 
 void add_estimators(Options& options, Texts& estimators) {
-  options.add({"--estimator", "NAME=PLUGIN[,key=value]...", Replay::first}, estimators,
+  options.add({"--estimator", "NAME=PLUGIN[,key=value]..."}, estimators,
               "an estimator with parameters; repeatable; default the plugin of that name");
 }
 
 void add_selection(Options& options, Selection& selection) {
-  options.add({"--filter", "GLOB", Replay::nowhere}, selection.filters,
+  options.add({"--filter", "GLOB", Replay::no}, selection.filters,
               "only tests whose id, suite/name, matches; '-GLOB' leaves out those that match; * "
               "and ? are wildcards; repeatable; default all");
-  options.add({"--tag", "TAG", Replay::nowhere}, selection.tags,
+  options.add({"--tag", "TAG", Replay::no}, selection.tags,
               "only tests with this tag; repeatable: tests with any of them; default all");
 }
 
 void add_suites(Options& options, SuitesCommand& command) {
   options.add(
-      {.name = "SUITE", .replay = Replay::nowhere, .needed = "a suite file", .words = {"*.yaml"}},
+      {.name = "SUITE", .replay = Replay::no, .needed = "a suite file", .words = {"*.yaml"}},
       command.suites, read_suite, "suite files");
   add_selection(options, command.options.selection);
-  options.add({"--coarsen", "F", Replay::last}, command.options.coarsen, read_positive,
-              "multiply every `detect` by F, above 0; that of a law is at most 0.5; default 1");
-  options.add({"--set", "estimator.key=value", Replay::first}, command.assignments,
+  options.add({"--set", "estimator.key=value"}, command.assignments,
               "set a parameter of an estimator; repeatable; default as in the suite");
+  options.add({"--coarsen", "F"}, command.options.coarsen, read_positive,
+              "multiply every `detect` by F, above 0; that of a law is at most 0.5; default 1");
 }
 
 constexpr Running of_suites{
@@ -159,18 +159,18 @@ Examples:
 )");
   add_suites(options, command);
   options.add(
-      {"--shard", "I/N", Replay::nowhere}, command.options.shard, read_shard,
+      {"--shard", "I/N", Replay::no}, command.options.shard, read_shard,
       "only the I-th of N parts of the tests, which `assay merge` joins; default all, or as "
       "GTEST_TOTAL_SHARDS or TEST_TOTAL_SHARDS says");
-  options.flag({"--fail-fast", "", Replay::nowhere},
+  options.flag({"--fail-fast", "", Replay::no},
                "stop at the first broken claim; default run all claims",
                [&command] { command.options.fail_fast = true; });
-  options.add({"--checkpoint", "FILE", Replay::nowhere, "", {"*"}}, command.options.checkpoint,
+  options.add({"--checkpoint", "FILE", Replay::no, "", {"*"}}, command.options.checkpoint,
               "keep what was drawn in FILE and FILE.kept; after a kill or Ctrl-C the same command "
               "continues from them; removed at the end; default none");
-  options.add({"--checkpoint-every", "S", Replay::nowhere}, command.options.checkpoint_every,
+  options.add({"--checkpoint-every", "S", Replay::no}, command.options.checkpoint_every,
               read_positive, "seconds between two writes of the checkpoint; default 60");
-  options.add({"--ledger", "FILE", Replay::nowhere, "", {"*"}}, command.options.ledger,
+  options.add({"--ledger", "FILE", Replay::no, "", {"*"}}, command.options.ledger,
               "add the run's evidence to that of earlier runs with fresh seeds; fail if all "
               "together refute a claim; default none");
   add_running(options, command, of_suites);
@@ -187,7 +187,7 @@ Examples:
   assay plan suites/cycles.yaml --list-renders    for other machines
 )");
   add_suites(options, command);
-  options.flag({"--list-renders", "", Replay::nowhere},
+  options.flag({"--list-renders", "", Replay::no},
                "print the missing renders instead of the plan, one a line: command, seed and "
                "file, separated by tabs; first of the pilots, then of the tests; default the plan",
                [&command] { command.list_renders = true; });
@@ -207,6 +207,7 @@ Examples:
   CheckArguments& given = command.arguments;
   options.add({.name = "CLAIM", .needed = "a claim"}, given.claim, read_claim,
               "the claim, in quotes");
+  add_estimators(options, given.estimators);
   options.add_key(
       {"--detect", "X"}, given.keys,
       "the effect that must not pass, as 0.5% or 0.002; default none: 1000 observations; "
@@ -214,7 +215,7 @@ Examples:
   options.add_key({"--allow", "X"}, given.keys,
                   "the tolerated effect, as 0.5% or 0.002; default 0");
   options.add_key(
-      {"--test", "METHOD", Replay::middle, "", method_names()}, given.keys,
+      {"--test", "METHOD", Replay::yes, "", method_names()}, given.keys,
       "force a method, one of " + listed(method_names()) + "; default chosen from the pilot");
   options.add_key(
       {"--over", "SWEEP"}, given.keys,
@@ -232,7 +233,6 @@ Examples:
       {"--budget", "B"}, given.keys,
       "the most it may cost: 1e7 primaries with those of the pilot, or 30s of CPU time, "
       "which does not count waiting programs; default none");
-  add_estimators(options, given.estimators);
   options.add({"--primaries", "N"}, given.primaries, at_least(1),
               "primary estimates of an observation; default chosen from the pilot");
   options.add_key({"--secondaries", "M"}, given.keys,
@@ -286,7 +286,7 @@ Examples:
               "G and B, or what stands for them, and an alpha that is not 1");
   options.add({"--ignore", "KIND"}, given.ignores_nonfinite, OneOf<bool>{{{"nonfinite", true}}},
               "nonfinite: leave out pixels that are not finite in some picture; default an error");
-  options.add({"--mask", "FILE", Replay::middle, "", {"*"}}, given.mask,
+  options.add({"--mask", "FILE", Replay::yes, "", {"*"}}, given.mask,
               "a picture; pixels where it is 0 are left out; default none");
   options.add({"--pixels", "KIND"}, given.independent_pixels,
               OneOf<bool>{{{"dependent", false}, {"independent", true}}},
@@ -334,7 +334,7 @@ Examples:
               "primary estimates of an observation; default 1");
   options.add({"--secondaries", "M"}, given.secondaries, at_least(1),
               "number of observations; default 10");
-  options.add({"--seed", "N|random", Replay::middle, "", {"random"}}, given.seed, read_seed,
+  options.add({"--seed", "N|random", Replay::yes, "", {"random"}}, given.seed, read_seed,
               "seed of the stream, or a fresh one; default 1");
 }
 
@@ -364,7 +364,7 @@ Examples:
   options.add({"--samples", "N"}, given.samples, at_least(2),
               "observations of every test, in one look, 2 or more; default planned with looks; for "
               "a method alone 1000, or 64 images");
-  options.add({"--seed", "N|random", Replay::middle, "", {"random"}}, given.seed, read_seed,
+  options.add({"--seed", "N|random", Replay::yes, "", {"random"}}, given.seed, read_seed,
               "seed of the first run, from which the others count on; default 1");
   add_threads(options, given.threads);
   add_quiet(options, output);

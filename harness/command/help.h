@@ -9,16 +9,16 @@
 
 namespace assay::harness {
 
-/// The place of an option in the line that repeats a test. What changes no number is `nowhere`. So
-/// are suites, seed and selection, since the record adds each test's own.
-enum class Replay { first, middle, last, nowhere };
+/// Whether the line that repeats a test has an option, in the order of the rows. What changes no
+/// number is left out. So are suites, seed and selection, since the record adds each test's own.
+enum class Replay { no, yes };
 
 /// An option or an argument of a command.
 struct OptionText {
-  std::string name;                ///< "--seed"; an argument's is without dashes.
-  std::string value = "";          ///< "N|random"; of an argument what the usage line shows.
-  Replay replay = Replay::middle;  ///< An argument stands first, or nowhere.
-  std::string needed = "";         ///< What a message says is needed; "" if it may be left out.
+  std::string name;        ///< "--seed"; an argument's is without dashes.
+  std::string value = "";  ///< "N|random"; of an argument what the usage line shows.
+  Replay replay = Replay::yes;
+  std::string needed = "";  ///< What a message says is needed; "" if it may be left out.
   std::vector<std::string> words = {};  ///< Completion offers them; a `*` stands for files.
   std::string about = "";
   bool repeats = false;

@@ -202,15 +202,12 @@ void Options::read_values() const {
   afterwards_();
   if (replay_line_ == nullptr) return;
   *replay_line_ = "assay " + command;
-  for (const Replay place : {Replay::first, Replay::middle, Replay::last}) {
-    for (const Row& row : rows_) {
-      const bool argument = row.option->get_positional();
-      const bool first = argument && row.text.replay != Replay::nowhere;
-      if ((first ? Replay::first : row.text.replay) != place) continue;
-      const bool flag = row.option->get_expected_max() == 0;
-      if (flag && row.option->count() > 0) *replay_line_ += " " + row.text.name;
-      if (!flag) *replay_line_ += option_words(argument ? "" : row.text.name, row.given());
-    }
+  for (const Row& row : rows_) {
+    if (row.text.replay == Replay::no) continue;
+    const bool flag = row.option->get_expected_max() == 0;
+    const std::string name = row.text.is_argument() ? "" : row.text.name;
+    if (flag && row.option->count() > 0) *replay_line_ += " " + name;
+    if (!flag) *replay_line_ += option_words(name, row.given());
   }
 }
 

@@ -64,7 +64,7 @@ TEST(CommandLine, RunsSuitesWithEveryOption) {
   EXPECT_EQ(command.options.ledger, "n.ledger");
   // Each test's replay names the test, and adds to no ledger.
   EXPECT_EQ(command.options.command,
-            "assay run --set x.n=1 --set 'x.v=[1, 2]' --alpha 0.05 --coarsen 4");
+            "assay run --set x.n=1 --set 'x.v=[1, 2]' --coarsen 4 --alpha 0.05");
 }
 
 TEST(CommandLine, PlansSuitesAsTheyWouldRun) {
