@@ -9,8 +9,8 @@
 
 namespace assay::harness {
 
-/// Whether the line that repeats a test has an option, in the order of the rows. What changes no
-/// number is left out. So are suites, seed and selection, since the record adds each test's own.
+/// The line that repeats a test keeps the options that change its numbers. Suites, seed and
+/// selection are left out, since the record adds each test's own.
 enum class Replay { no, yes };
 
 /// An option or an argument of a command.
@@ -18,7 +18,7 @@ struct OptionText {
   std::string name;        ///< "--seed"; an argument's is without dashes.
   std::string value = "";  ///< "N|random"; of an argument what the usage line shows.
   Replay replay = Replay::yes;
-  std::string needed = "";  ///< What a message says is needed; "" if it may be left out.
+  std::string needed = "";  ///< A message says that it is needed; "" if it may be left out.
   std::vector<std::string> words = {};  ///< Completion offers them; a `*` stands for files.
   std::string about = "";
   bool repeats = false;
