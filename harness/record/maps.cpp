@@ -19,7 +19,6 @@
 #include "stats/cells/chi_square_fit.h"
 #include "stats/images/image_moments.h"
 #include "stats/tails/kolmogorov.h"
-#include "stats/tails/tails.h"
 
 namespace assay::harness {
 namespace {
@@ -63,25 +62,12 @@ float narrow(double value) {
 
 template <class Value>
 reports::Map map_of(const char* name, const ImageShape& shape, const Value& value) {
-  constexpr std::size_t at_a_time = std::size_t{1} << 16;
-  reports::Map map{
-      .name = name, .width = shape.width, .height = shape.height, .components = shape.components};
-  std::vector<float>& texels = map.texels.values;
-  texels.resize(shape.elements());
-  on_all_threads((texels.size() + at_a_time - 1) / at_a_time, [&](std::size_t part) {
-    const std::size_t first = part * at_a_time;
-    const std::size_t last = std::min(first + at_a_time, texels.size());
-    for (std::size_t i = first; i < last; ++i) texels[i] = narrow(value(i));
-  });
-  return map;
-}
-
-/// Sidak's adjustment over the elements that vary.
-double adjusted_p(double z, double tested) {
-  const double log_p = std::isfinite(z)
-                           ? std::min(0.0, std::log(2.0) + stats::normal_tails(std::abs(z)).upper)
-                           : std::numeric_limits<double>::lowest();
-  return std::exp(stats::adjusted(log_p, {.count = tested, .share = 1}));
+  return {.name = name,
+          .width = shape.width,
+          .height = shape.height,
+          .components = shape.components,
+          .texels = {
+              mapped_indices(shape.elements(), [&](std::size_t i) { return narrow(value(i)); })}};
 }
 
 void add_moments(const DrawnTest& drawn, std::size_t subject, reports::Test& test) {
@@ -99,14 +85,7 @@ void add_moments(const DrawnTest& drawn, std::size_t subject, reports::Test& tes
 void add_maps(const DrawnTest& drawn, const ImageOutcome& outcome, reports::Test& test) {
   const Question& question = drawn.outcome.question;
   const ImageShape& shape = *question.subjects[0].image;
-  const double tested = std::max(1.0, static_cast<double>(outcome.family.tested));
   test.maps.push_back(map_of("z", shape, [&](std::size_t i) { return outcome.z[i]; }));
-  // Up to this |z| an adjusted p is 1 - e^-40 or more: its tail need not be computed.
-  const double tail = 20 / tested;  // two-sided
-  const double one = tail < 0.25 ? stats::upper_normal_quantile(tail) : 0;
-  test.maps.push_back(map_of("p_adjusted", shape, [&](std::size_t i) {
-    return std::abs(outcome.z[i]) < one ? 1 : adjusted_p(outcome.z[i], tested);
-  }));
   for (std::size_t subject = 0; subject < question.subjects.size(); ++subject) {
     add_moments(drawn, subject, test);
   }

@@ -100,7 +100,7 @@ struct Texels {
 /// One sample has z = (observed - expected) / sqrt(expected). Two samples are expected to follow
 /// both together.
 struct Map {
-  std::string name;    ///< `z`, `p_adjusted`, `mean`, `variance`, `reference`, `other_mean`, …
+  std::string name;    ///< `z`, `mean`, `variance`, `reference`, `other_mean`, …
   std::string source;  ///< The estimator of a mean or variance.
   std::string file;    ///< The EXR beside the JSON, if written; `name` is its layer.
   std::uint64_t width = 0, height = 0;

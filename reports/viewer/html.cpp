@@ -112,7 +112,7 @@ Map reduced(const Map& map, std::uint64_t factor) {
   return means;
 }
 
-/// The title of a map that the viewer shows; it does not show variances and adjusted p-values.
+/// The title of a map that the viewer shows; it does not show variances.
 std::string title_of(const Map& map) {
   if (map.name == "mean" || map.name == "other_mean") return "mean of " + map.source;
   static const std::map<std::string_view, const char*> titles{
