@@ -9,7 +9,7 @@
 #include "harness/image/image_evidence.h"
 #include "harness/plan/sizes.h"
 #include "harness/question/question.h"
-#include "harness/run/image_judge.h"
+#include "harness/run/evaluate.h"
 #include "harness/sampling/image_views.h"
 #include "harness/theta/ask.h"
 #include "stats/images/image_covariance.h"

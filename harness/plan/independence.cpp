@@ -1,11 +1,10 @@
-#include "harness/plan/independence.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
 #include "estimators/ready_made.h"
+#include "harness/plan/plan.h"
 #include "harness/theta/ask.h"
 #include "harness/theta/gate.h"
 #include "harness/theta/theta.h"

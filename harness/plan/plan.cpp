@@ -8,7 +8,6 @@
 #include <limits>
 #include <stdexcept>
 
-#include "harness/plan/independence.h"
 #include "harness/plan/sizes.h"
 #include "harness/question/question.h"
 #include "harness/sampling/pool.h"

@@ -15,7 +15,7 @@
 #include "harness/families/law.h"
 #include "harness/question/question.h"
 #include "harness/record/record_of.h"
-#include "harness/run/image_judge.h"
+#include "harness/run/evaluate.h"
 #include "stats/cells/chi_square_fit.h"
 #include "stats/images/image_moments.h"
 #include "stats/tails/kolmogorov.h"

@@ -16,7 +16,7 @@
 #include "harness/base/numbers.h"
 #include "harness/base/version.h"
 #include "harness/base/work.h"
-#include "harness/plan/independence.h"
+#include "harness/plan/plan.h"
 #include "harness/question/question.h"
 #include "harness/run/looks.h"
 #include "harness/sampling/summary.h"

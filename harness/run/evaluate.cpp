@@ -10,10 +10,8 @@
 #include "estimators/core/quoting.h"
 #include "harness/base/numbers.h"
 #include "harness/draws/sampler_setup.h"
-#include "harness/plan/independence.h"
 #include "harness/plan/plan.h"
 #include "harness/plan/sizes.h"
-#include "harness/run/image_judge.h"
 #include "harness/theta/theta.h"
 #include "reports/words/number.h"
 

@@ -1,5 +1,3 @@
-#include "harness/run/image_judge.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -9,6 +7,7 @@
 #include <span>
 #include <utility>
 
+#include "harness/run/evaluate.h"
 #include "harness/sampling/pool.h"
 #include "harness/theta/ask.h"
 #include "reports/words/number.h"

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "harness/draws/sampler_setup.h"
-#include "harness/plan/independence.h"
+#include "harness/plan/plan.h"
 #include "harness/plan/sizes.h"
 #include "harness/question/question.h"
 #include "stats/means/student_t.h"

@@ -5,7 +5,6 @@
 #include <numbers>
 
 #include "harness/run/evaluate.h"
-#include "harness/run/image_judge.h"
 #include "harness/theta/ask.h"
 #include "harness/theta/theta.h"
 #include "reports/words/describe.h"
