@@ -59,7 +59,7 @@ const Theta& theta_of_second_moments();
     "harness/families/added_quantity.cpp": """#include "harness/families/added_quantity.h"
 
 #include "harness/families/families.h"
-#include "harness/plan/sizes.h"
+#include "harness/plan/outcome.h"
 #include "stats/means/student_t.h"
 
 namespace assay::harness {

@@ -23,7 +23,6 @@
 #include "harness/question/question.h"
 #include "harness/ranks/ranks.h"
 #include "harness/run/evaluate.h"
-#include "harness/run/looks.h"
 #include "harness/run/planned_run.h"
 #include "harness/sampling/checkpoint.h"
 #include "harness/sampling/pool.h"

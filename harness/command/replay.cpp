@@ -16,7 +16,6 @@
 #include "harness/question/question.h"
 #include "harness/record/output.h"
 #include "harness/record/record_of.h"
-#include "harness/run/looks.h"
 #include "harness/run/planned_run.h"
 #include "reports/words/number.h"
 #include "reports/words/text.h"

@@ -6,7 +6,7 @@
 #include "harness/draws/sampler_setup.h"
 #include "harness/families/families.h"
 #include "harness/families/law.h"
-#include "harness/plan/sizes.h"
+#include "harness/plan/outcome.h"
 #include "harness/question/question.h"
 #include "harness/run/evaluate.h"
 #include "stats/means/binomial.h"

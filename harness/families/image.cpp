@@ -7,7 +7,7 @@
 #include "harness/base/work.h"
 #include "harness/families/families.h"
 #include "harness/image/image_evidence.h"
-#include "harness/plan/sizes.h"
+#include "harness/plan/outcome.h"
 #include "harness/question/question.h"
 #include "harness/run/evaluate.h"
 #include "harness/sampling/image_views.h"

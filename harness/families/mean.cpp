@@ -5,7 +5,7 @@
 #include <memory>
 
 #include "harness/families/families.h"
-#include "harness/plan/sizes.h"
+#include "harness/plan/outcome.h"
 #include "harness/question/question.h"
 #include "harness/run/evaluate.h"
 #include "harness/theta/ask.h"

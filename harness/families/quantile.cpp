@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "harness/families/families.h"
-#include "harness/plan/sizes.h"
+#include "harness/plan/outcome.h"
 #include "harness/question/question.h"
 #include "harness/theta/ask.h"
 #include "harness/theta/theta.h"

@@ -13,7 +13,6 @@
 
 #include "harness/families/families.h"
 #include "harness/plan/outcome.h"
-#include "harness/plan/sizes.h"
 #include "harness/question/question.h"
 #include "harness/run/evaluate.h"
 #include "harness/theta/ask.h"

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "harness/families/families.h"
-#include "harness/plan/sizes.h"
+#include "harness/plan/outcome.h"
 #include "harness/question/question.h"
 #include "harness/run/evaluate.h"
 #include "harness/suite/suite.h"

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "harness/families/families.h"
-#include "harness/plan/sizes.h"
+#include "harness/plan/outcome.h"
 #include "harness/question/question.h"
 #include "harness/run/evaluate.h"
 #include "harness/sampling/summary.h"

@@ -19,7 +19,7 @@
 #include "harness/plan/plan.h"
 #include "harness/record/record_of.h"
 #include "harness/run/evaluate.h"
-#include "harness/run/looks.h"
+#include "harness/run/planned_run.h"
 #include "harness/sampling/prepare.h"
 #include "harness/suite/yaml.h"
 #include "harness/theta/ask.h"

@@ -8,7 +8,7 @@
 #include <limits>
 #include <stdexcept>
 
-#include "harness/plan/sizes.h"
+#include "harness/plan/outcome.h"
 #include "harness/question/question.h"
 #include "harness/sampling/pool.h"
 #include "harness/sampling/summary.h"

@@ -18,7 +18,7 @@
 #include "harness/base/work.h"
 #include "harness/plan/plan.h"
 #include "harness/question/question.h"
-#include "harness/run/looks.h"
+#include "harness/run/planned_run.h"
 #include "harness/sampling/summary.h"
 #include "harness/theta/ask.h"
 #include "harness/theta/decision.h"

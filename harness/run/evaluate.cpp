@@ -10,8 +10,8 @@
 #include "estimators/core/quoting.h"
 #include "harness/base/numbers.h"
 #include "harness/draws/sampler_setup.h"
+#include "harness/plan/outcome.h"
 #include "harness/plan/plan.h"
-#include "harness/plan/sizes.h"
 #include "harness/theta/theta.h"
 #include "reports/words/number.h"
 

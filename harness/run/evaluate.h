@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "harness/plan/outcome.h"
-#include "harness/plan/sizes.h"
 #include "harness/sampling/pool.h"
 
 namespace assay::harness {

@@ -1,5 +1,3 @@
-#include "harness/run/looks.h"
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -7,9 +5,10 @@
 #include <utility>
 
 #include "harness/draws/sampler_setup.h"
+#include "harness/plan/outcome.h"
 #include "harness/plan/plan.h"
-#include "harness/plan/sizes.h"
 #include "harness/question/question.h"
+#include "harness/run/planned_run.h"
 #include "stats/means/student_t.h"
 
 namespace assay::harness {

@@ -1,5 +1,3 @@
-#include "harness/run/picture_stream.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -15,8 +13,9 @@
 #include "estimators/ready_made.h"
 #include "harness/base/large_vector.h"
 #include "harness/image/image_evidence.h"
-#include "harness/plan/sizes.h"
+#include "harness/plan/outcome.h"
 #include "harness/run/evaluate.h"
+#include "harness/run/planned_run.h"
 #include "stats/images/image_equivalence.h"
 #include "stats/images/image_moments.h"
 #include "stats/pyramids/image_pyramid.h"

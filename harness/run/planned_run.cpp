@@ -13,7 +13,6 @@
 #include "harness/base/refuse.h"
 #include "harness/base/work.h"
 #include "harness/plan/plan.h"
-#include "harness/run/picture_stream.h"
 #include "harness/theta/ask.h"
 #include "harness/theta/methods.h"
 

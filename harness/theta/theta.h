@@ -162,7 +162,7 @@ class Theta {
   }
   /// The least theta that a test of that size finds with probability 1 - beta. For `within` it is
   /// the least margin that the test proves if theta is 0. By default that of the t test of a
-  /// channel that varies (plan/sizes.h), on the side where more is needed.
+  /// channel that varies (plan/outcome.h), on the side where more is needed.
   virtual std::optional<double> detectable(const Sized&) const;
   /// True if no theta in the declared range is found with probability 1 - beta.
   virtual bool finds_nothing(const Sized&) const { return false; }

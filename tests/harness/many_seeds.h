@@ -4,7 +4,7 @@
 // verdicts of its tests.
 
 #include "harness/run/evaluate.h"
-#include "harness/run/looks.h"
+#include "harness/run/planned_run.h"
 #include "harness/sampling/executor.h"
 #include "tests/harness/planned.h"
 #include "tests/stats/calibration.h"

@@ -1,6 +1,6 @@
 #include "harness/command/commands.h"
 #include "harness/plan/plan.h"
-#include "harness/run/looks.h"
+#include "harness/run/planned_run.h"
 #include "reports/words/number.h"
 #include "reports/words/text.h"
 #include "tests/harness/prelude.h"

@@ -1,5 +1,4 @@
 #include "harness/plan/outcome.h"
-#include "harness/plan/sizes.h"
 #include "harness/theta/decision.h"
 #include "harness/theta/methods.h"
 #include "harness/theta/theta.h"

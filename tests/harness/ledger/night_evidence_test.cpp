@@ -1,5 +1,4 @@
 #include "harness/ledger/ledger.h"
-#include "harness/run/looks.h"
 #include "harness/run/planned_run.h"
 #include "tests/harness/prelude.h"
 #include "tests/philox.h"

@@ -1,5 +1,4 @@
 #include "harness/plan/outcome.h"
-#include "harness/plan/sizes.h"
 #include "tests/harness/questions.h"
 
 namespace assay::harness {

@@ -1,6 +1,6 @@
 #include "harness/plan/plan.h"
 
-#include "harness/plan/sizes.h"
+#include "harness/plan/outcome.h"
 #include "harness/run/planned_run.h"
 #include "stats/planning/power.h"
 #include "stats/tails/tails.h"

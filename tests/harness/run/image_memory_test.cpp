@@ -1,6 +1,6 @@
 // Pictures that do not fit into memory are refused before they are read.
 
-#include "harness/run/picture_stream.h"
+#include "harness/run/planned_run.h"
 #include "harness/suite/suite.h"
 #include "harness/theta/ask.h"
 #include "tests/harness/pictures.h"

@@ -1,7 +1,5 @@
 // Claims on two stacks of pictures that are taken rows after rows.
 
-#include "harness/run/picture_stream.h"
-
 #include <fmt/format.h>
 
 #include "harness/run/planned_run.h"

@@ -1,6 +1,6 @@
 #include <fmt/format.h>
 
-#include "harness/plan/sizes.h"
+#include "harness/plan/outcome.h"
 #include "harness/run/evaluate.h"
 #include "reports/words/number.h"
 #include "tests/harness/prelude.h"
