@@ -206,8 +206,7 @@ void allow_for_dependence(const std::vector<Rows>& all, Plan& plan) {
   for (const Rows& rows : all) {
     const double factor = stats::allowance_for_dependence(rows.values);
     if (!(factor > 1)) continue;
-    plan.row_allowances.push_back(
-        {.subject = rows.subject, .channel = rows.channel, .factor = factor});
+    plan.row_allowances[{rows.subject, rows.channel}] = factor;
     plan.gates.push_back(gate_of("variance of the mean, allowed for dependence", factor, 1, "amber",
                                  ", " + rows.label));
   }
@@ -285,12 +284,12 @@ stats::Moments as_tested(const Plan& plan, std::size_t subject, std::size_t chan
   // Constants are judged by themselves, and have no order.
   if (!(moments.m2 > 0) || values.size() < fewest_in_order) return moments;
   if (plan.method.is.of_batches) return stats::batch_means(values, stats::sufficient_batch(values));
-  for (const RowAllowance& each : plan.row_allowances) {
-    if (each.subject != subject || each.channel != channel) continue;
-    moments.m2 *= each.factor;
-    moments.m3 *= each.factor * std::sqrt(each.factor);
-    moments.m4 *= each.factor * each.factor;
-  }
+  const auto allowance = plan.row_allowances.find({subject, channel});
+  if (allowance == plan.row_allowances.end()) return moments;
+  const double factor = allowance->second;
+  moments.m2 *= factor;
+  moments.m3 *= factor * std::sqrt(factor);
+  moments.m4 *= factor * factor;
   return moments;
 }
 

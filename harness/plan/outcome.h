@@ -4,8 +4,10 @@
 
 #include <cstdint>
 #include <exception>
+#include <map>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "harness/image/image_evidence.h"
@@ -46,19 +48,13 @@ struct Reason {
   bool empty() const { return text.empty(); }
 };
 
-/// Factor on the variance of the mean of a recorded channel's rows.
-struct RowAllowance {
-  std::size_t subject;
-  std::size_t channel;
-  double factor;
-};
-
 /// The design of a test, frozen before its own data are drawn.
 struct Plan {
   Method method;
   /// The pilots choose the cells that both sides' points are counted in.
   std::shared_ptr<const stats::SampledCells> cells = {};
-  std::vector<RowAllowance> row_allowances = {};
+  /// Factors on the variance of the mean of rows, by subject and channel.
+  std::map<std::pair<std::size_t, std::size_t>, double> row_allowances = {};
   std::vector<std::uint64_t> primaries = {};  ///< One a subject.
   stats::LookSchedule looks = {};             ///< Sizes are the most that any subject takes.
   /// Larger sizes that the last look is put off to while no look is sound. More observations must
