@@ -241,27 +241,6 @@ const char* bias_name(std::optional<BiasClass> bias) {
   return bias ? names[static_cast<int>(*bias)] : "unknown";
 }
 
-/// The draws of an estimator itself for a test.
-struct Draw {
-  std::shared_ptr<Pool> pool;
-  std::uint64_t secondaries = 0;
-};
-
-/// The draw of the test that drew most; nullopt if none did.
-std::optional<Draw> most_drawn(const PreparedEstimator& estimator, const SuiteRun& run) {
-  std::optional<Draw> most;
-  for (const TestWork& work : run.tests) {
-    for (std::size_t i = 0; i < work.pools.size(); ++i) {
-      const Subject& side = work.outcome.question.subjects[i];
-      const bool its = side.estimator == &estimator && side.purpose.empty() &&
-                       work.pools[i]->setup() == estimator.setup;
-      const std::uint64_t secondaries = work.outcome.secondaries(i);
-      if (its && (!most || most->secondaries < secondaries)) most = {work.pools[i], secondaries};
-    }
-  }
-  return most;
-}
-
 Estimate mean_of(const stats::Moments& moments, double confidence) {
   if (moments.count == 0) return {};
   if (moments.m2 == 0) return {number(moments.mean), number(moments.mean), number(moments.mean)};
@@ -316,11 +295,20 @@ reports::EstimatorSummary summarise(const PreparedEstimator& estimator, const Su
       .defect = information.defect,
       .confidence = confidence,
       .variance_of = nature.averages ? "primary" : "secondary"};
-  const std::optional<Draw> draw = most_drawn(estimator, run);
-  if (!draw) return row;
-  row.primaries = draw->pool->primaries();
-  row.secondaries = draw->secondaries;
-  const Sample sample = draw->pool->sample(draw->secondaries);
+  const Pool* pool = nullptr;
+  for (const TestWork& work : run.tests) {
+    for (std::size_t i = 0; i < work.pools.size(); ++i) {
+      const Subject& side = work.outcome.question.subjects[i];
+      const bool its = side.estimator == &estimator && side.purpose.empty() &&
+                       work.pools[i]->setup() == estimator.setup;
+      if (!its || work.outcome.secondaries(i) <= row.secondaries) continue;
+      pool = work.pools[i].get();
+      row.secondaries = work.outcome.secondaries(i);
+    }
+  }
+  if (pool == nullptr) return row;
+  row.primaries = pool->primaries();
+  const Sample sample = pool->sample(row.secondaries);
   const Drawn* const drawn = std::get_if<Drawn>(&sample);
   if (drawn == nullptr) return row;
   const Summary& summary = drawn->summary();
@@ -445,13 +433,12 @@ void note_retries(reports::Record& record) {
 void add_replay(const TestEntry& entry, const SuiteRun& run, const SuiteRuns& runs,
                 const RunOptions& options, reports::Test& test) {
   for (const Source& source : sources_of(entry.claim)) {
-    for (const EstimatorEntry& estimator : run.suite.estimators) {
-      if (estimator.name != source.estimator) continue;
-      const std::string from = passing_rows(run.suite, estimator);
-      if (from.empty()) continue;
-      test.no_replay = from + " cannot be read again: write it to a file";
-      return;
-    }
+    const auto& all = run.suite.estimators;
+    const auto entry_of = std::ranges::find(all, source.estimator, &EstimatorEntry::name);
+    const std::string from = entry_of == all.end() ? "" : passing_rows(run.suite, *entry_of);
+    if (from.empty()) continue;
+    test.no_replay = from + " cannot be read again: write it to a file";
+    return;
   }
   const std::string command = "assay run";
   std::string line = options.command;
