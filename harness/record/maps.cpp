@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <filesystem>
 #include <limits>
@@ -98,15 +99,11 @@ void add_maps(const DrawnTest& drawn, const ImageOutcome& outcome, reports::Test
 /// A unique file name of letters, digits, `-` and `_` for each test.
 std::string file_name(const std::string& id) {
   constexpr std::size_t longest = 80;
-  std::string name;
-  for (const char c : id.substr(0, longest)) {
-    const bool plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9');
-    if (plain || c == '-') {
-      name += c;
-    } else if (!name.empty() && name.back() != '_') {
-      name += '_';
-    }
-  }
+  std::string name = id.substr(0, longest);
+  std::ranges::replace_if(
+      name, [](unsigned char c) { return std::isalnum(c) == 0 && c != '-'; }, '_');
+  const auto again = std::ranges::unique(name, [](char a, char b) { return a == '_' && b == '_'; });
+  name.erase(again.begin(), again.end());
   return fmt::format("{}-{:08x}.exr", name, text_hash(id) & 0xffffffff);
 }
 

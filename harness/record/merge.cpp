@@ -85,11 +85,7 @@ std::vector<reports::EstimatorSummary> estimators_of(const std::vector<ShardFile
   for (const ShardFile& shard : shards) {
     for (const reports::EstimatorSummary& row : shard.record.suites[suite].estimators) {
       const auto same = std::ranges::find(most, row.name, &reports::EstimatorSummary::name);
-      if (same == most.end()) {
-        most.push_back(row);
-      } else if (same->secondaries < row.secondaries) {
-        *same = row;
-      }
+      if (same != most.end() && same->secondaries < row.secondaries) *same = row;
     }
   }
   return most;

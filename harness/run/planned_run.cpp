@@ -9,7 +9,6 @@
 #include <set>
 #include <tuple>
 
-#include "estimators/core/waiting.h"
 #include "harness/base/refuse.h"
 #include "harness/base/work.h"
 #include "harness/plan/plan.h"
