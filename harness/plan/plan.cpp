@@ -168,15 +168,6 @@ std::uint64_t primaries_of(const Subject& subject, const Primaries& chosen) {
   return found != chosen.end() ? found->second : 1;
 }
 
-/// `detect`, if it is not in per cent, as a part of the claimed number or image; 0 of another.
-double part_of_size(const Question& question, const Pilots& pilots) {
-  const std::optional<Margin>& detect = question.test->detect;
-  if (!detect || detect->relative) return 0;
-  const double size = std::max(question.theta->known_size(question),
-                               question.theta->piloted_size(question, pilots));
-  return size > 0 ? detect->value / size : 0;
-}
-
 // ---- Looks
 
 // Half a day at 40 ns a primary.
@@ -557,8 +548,12 @@ TestOutcome plan_test(Question asked, const FamilyPlace& place, const Pilots& pi
 
 std::string doubtful_margin(const Question& question, const Pilots& pilots) {
   constexpr double large = 0.1, small = 1e-4;
-  const double part = part_of_size(question, pilots);
-  if (part == 0 || (part >= small && part <= large)) return "";
+  const std::optional<Margin>& detect = question.test->detect;
+  if (!detect || detect->relative) return "";
+  const double size = std::max(question.theta->known_size(question),
+                               question.theta->piloted_size(question, pilots));
+  const double part = detect->value / size;
+  if (!(size > 0) || (part >= small && part <= large)) return "";
   return fmt::format(
              fmt::runtime(part > large
                               ? "errors below `detect`, {:.3g} % of what is claimed, may pass"

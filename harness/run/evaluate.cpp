@@ -463,13 +463,10 @@ void take_sound_look(TestWork& work, const DrawnTest& test, bool may_go_on) {
 /// The reason why the look cannot be taken; nullopt if it was.
 std::optional<std::string> take_drawn_look(TestWork& work, bool may_go_on) {
   if (!work.outcome.plan.error.empty()) return work.outcome.plan.error;
-  for (std::size_t subject = 0; subject < work.pools.size(); ++subject) {
-    const Sample sample = work.sample(subject);
-    const Fault* const fault = std::get_if<Fault>(&sample);
-    if (fault != nullptr) return sentence_of(*fault, work.outcome.question.subjects[subject]);
-  }
-  const std::optional<DrawnTest> test = drawn(work);
-  if (std::string why = unusable(*test); !why.empty()) return why;
+  std::string why;
+  const std::optional<DrawnTest> test = drawn(work, &why);
+  if (test) why = unusable(*test);
+  if (!why.empty()) return why;
   if (!work.outcome.plan.pilot_error.empty()) return work.outcome.plan.pilot_error;
   take_sound_look(work, *test, may_go_on);
   return std::nullopt;
@@ -500,13 +497,15 @@ Sample TestWork::sample(std::size_t subject) const {
   return pools[subject]->sample(outcome.secondaries(subject));
 }
 
-std::optional<DrawnTest> drawn(const TestWork& work) {
+std::optional<DrawnTest> drawn(const TestWork& work, std::string* why) {
   DrawnTest test{.outcome = work.outcome};
   for (std::size_t subject = 0; subject < work.pools.size(); ++subject) {
     const Sample sample = work.sample(subject);
-    const Drawn* const drawn = std::get_if<Drawn>(&sample);
-    if (drawn == nullptr) return std::nullopt;
-    test.samples.push_back(*drawn);
+    if (const Fault* const fault = std::get_if<Fault>(&sample)) {
+      if (why != nullptr) *why = sentence_of(*fault, work.outcome.question.subjects[subject]);
+      return std::nullopt;
+    }
+    test.samples.push_back(std::get<Drawn>(sample));
   }
   return test;
 }

@@ -33,8 +33,8 @@ struct DrawnTest {
   std::vector<Drawn> samples;  ///< one for each subject
 };
 
-/// The test, or nullopt if a subject has a fault.
-std::optional<DrawnTest> drawn(const TestWork& work);
+/// The test, or nullopt if a subject has a fault, which `why` gets.
+std::optional<DrawnTest> drawn(const TestWork& work, std::string* why = nullptr);
 
 /// Computes numbers, gates and the verdict on the test's fixed share at the current look, once it
 /// is drawn. Sets `decided` if no later look can or need change it, or none is allowed.
