@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "harness/base/work.h"
-#include "harness/record/output.h"
+#include "harness/record/record_of.h"
 #include "reports/record/calibration.h"
 
 namespace assay::harness {

@@ -12,7 +12,6 @@
 #include "harness/base/identity.h"
 #include "harness/base/work.h"
 #include "harness/calibration/calibrate.h"
-#include "harness/record/output.h"
 #include "harness/record/record_of.h"
 #include "harness/suite/run_options.h"
 #include "harness/suite/suite.h"

@@ -12,7 +12,7 @@
 
 #include "harness/command/commands.h"
 #include "harness/command/help.h"
-#include "harness/record/output.h"
+#include "harness/record/record_of.h"
 #include "harness/suite/yaml.h"
 
 namespace CLI {

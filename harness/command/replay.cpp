@@ -14,7 +14,6 @@
 #include "harness/command/program.h"
 #include "harness/draws/sampler_setup.h"
 #include "harness/question/question.h"
-#include "harness/record/output.h"
 #include "harness/record/record_of.h"
 #include "harness/run/planned_run.h"
 #include "reports/words/number.h"

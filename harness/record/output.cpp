@@ -1,4 +1,3 @@
-#include "harness/record/output.h"
 
 #include <fmt/format.h>
 #include <unistd.h>

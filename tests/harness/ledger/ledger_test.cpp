@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include "harness/base/text_file.h"
-#include "harness/record/output.h"
+#include "harness/record/record_of.h"
 #include "tests/harness/prelude.h"
 #include "tests/philox.h"
 #include "tests/stats/calibration.h"

@@ -1,4 +1,4 @@
-#include "harness/record/output.h"
+#include "harness/record/record_of.h"
 #include "reports/report_formats.h"
 #include "tests/harness/prelude.h"
 

@@ -1,5 +1,5 @@
 #include "harness/command/commands.h"
-#include "harness/record/output.h"
+#include "harness/record/record_of.h"
 #include "tests/harness/prelude.h"
 
 namespace assay::harness {
