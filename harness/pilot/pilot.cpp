@@ -5,7 +5,6 @@
 #include <numeric>
 #include <set>
 
-#include "harness/sampling/prepare.h"
 #include "harness/theta/methods.h"
 #include "stats/images/image.h"
 

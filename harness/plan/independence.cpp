@@ -6,8 +6,6 @@
 #include "estimators/ready_made.h"
 #include "harness/plan/plan.h"
 #include "harness/theta/ask.h"
-#include "harness/theta/gate.h"
-#include "harness/theta/theta.h"
 #include "stats/gates/copies.h"
 #include "stats/gates/dependence.h"
 #include "stats/gates/independence_gates.h"

@@ -8,7 +8,6 @@
 #include <numbers>
 #include <regex>
 
-#include "harness/pilot/pilot.h"
 #include "harness/theta/ask.h"
 #include "reports/words/number.h"
 #include "stats/gates/assumption_gates.h"

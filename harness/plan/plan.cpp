@@ -8,13 +8,8 @@
 #include <limits>
 #include <stdexcept>
 
-#include "harness/plan/outcome.h"
-#include "harness/question/question.h"
 #include "harness/sampling/pool.h"
-#include "harness/sampling/summary.h"
 #include "harness/theta/ask.h"
-#include "harness/theta/methods.h"
-#include "harness/theta/theta.h"
 #include "stats/gates/assumption_gates.h"
 
 namespace assay::harness {

@@ -10,7 +10,6 @@
 
 #include "harness/base/identity.h"
 #include "harness/base/record_file.h"
-#include "harness/base/terminal.h"
 #include "harness/base/text_file.h"
 #include "harness/record/record_of.h"
 

@@ -10,7 +10,6 @@
 #include "estimators/parameters.h"
 #include "harness/base/text_file.h"
 #include "harness/record/record_of.h"
-#include "harness/sampling/pool.h"
 #include "harness/suite/suite.h"
 #include "reports/words/display.h"
 

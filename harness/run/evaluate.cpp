@@ -10,9 +10,7 @@
 #include "estimators/core/quoting.h"
 #include "harness/base/numbers.h"
 #include "harness/draws/sampler_setup.h"
-#include "harness/plan/outcome.h"
 #include "harness/plan/plan.h"
-#include "harness/theta/theta.h"
 #include "reports/words/number.h"
 
 namespace assay::harness {

@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "harness/run/evaluate.h"
-#include "harness/sampling/pool.h"
 #include "harness/theta/ask.h"
 #include "reports/words/number.h"
 #include "stats/images/image_dependence.h"

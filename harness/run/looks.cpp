@@ -5,9 +5,7 @@
 #include <utility>
 
 #include "harness/draws/sampler_setup.h"
-#include "harness/plan/outcome.h"
 #include "harness/plan/plan.h"
-#include "harness/question/question.h"
 #include "harness/run/planned_run.h"
 #include "stats/means/student_t.h"
 

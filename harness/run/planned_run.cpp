@@ -9,11 +9,10 @@
 #include <set>
 #include <tuple>
 
+#include "estimators/core/waiting.h"
 #include "harness/base/refuse.h"
-#include "harness/base/work.h"
 #include "harness/plan/plan.h"
 #include "harness/theta/ask.h"
-#include "harness/theta/methods.h"
 
 namespace assay::harness {
 namespace {

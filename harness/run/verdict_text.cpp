@@ -6,7 +6,6 @@
 
 #include "harness/run/evaluate.h"
 #include "harness/theta/ask.h"
-#include "harness/theta/theta.h"
 #include "reports/words/describe.h"
 #include "reports/words/number.h"
 #include "reports/words/text.h"
