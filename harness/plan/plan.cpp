@@ -155,14 +155,6 @@ std::uint64_t wanted_primaries(const Question& question, const FamilyPlace& plac
   return wanted;
 }
 
-/// Primaries of one subject: 1 for a sampler's draws, the suite's number, or the chosen one.
-std::uint64_t primaries_of(const Subject& subject, const Primaries& chosen) {
-  if (!subject.purpose.empty()) return 1;
-  if (subject.estimator->primaries) return *subject.estimator->primaries;
-  const auto found = chosen.find(subject.estimator->name);
-  return found != chosen.end() ? found->second : 1;
-}
-
 // ---- Looks
 
 // Half a day at 40 ns a primary.
@@ -333,10 +325,11 @@ stats::LookSchedule look_for_its_picture(const TestOutcome& test) {
 }
 
 bool inside_family(const Question& question) {
-  if (question.test->expect != reports::Verdict::pass) return false;
-  return std::ranges::none_of(question.subjects, [](const Subject& s) {
-    return !s.estimator->entry->information.original.empty();
-  });
+  const auto is_mutant = [](const Subject& side) {
+    return !side.estimator->entry->information.original.empty();
+  };
+  return question.test->expect == reports::Verdict::pass &&
+         std::ranges::none_of(question.subjects, is_mutant);
 }
 
 // ---- Forecast
@@ -495,8 +488,10 @@ TestOutcome plan_test(Question asked, const FamilyPlace& place, const Pilots& pi
           .regions = regions_of(question)};
   const bool single = question.theta->takes_single_primaries(question, pilots);
   for (const Subject& subject : question.subjects) {
-    const bool chosen = !single || subject.estimator->primaries;
-    plan.primaries.push_back(chosen ? primaries_of(subject, primaries) : 1);
+    const auto found = primaries.find(subject.estimator->name);
+    const std::uint64_t chosen = single || found == primaries.end() ? 1 : found->second;
+    const bool is_draw = !subject.purpose.empty();
+    plan.primaries.push_back(is_draw ? 1 : subject.estimator->primaries.value_or(chosen));
   }
   // The look of a test that nothing decides. Files are there whole.
   const bool files = std::ranges::all_of(question.subjects, is_recorded);

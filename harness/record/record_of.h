@@ -59,8 +59,7 @@ bool tell_broken(const reports::Test& test, const Output& output);
 void write_run(reports::Record& record, const Output& output,
                const std::set<std::string>& told = {});
 
-/// Returns 0 if every test is ok, and 1 if one is not or the ledger has an alarm. Returns 3 if
-/// nothing failed but something is inconclusive, 4 if nothing ran, 77 if all were skipped.
+/// The exit code, as `assay help all` explains it.
 int exit_code(const reports::Record&, InconclusivePolicy);
 
 /// Returns annotations of GitHub Actions to print; "" unless GITHUB_ACTIONS is `true`. It also
@@ -123,8 +122,8 @@ reports::Record record_of(const SuiteRuns& runs, const RunOptions& options);
 
 // ---- Joins the shards of one run to the record of the whole run.
 
-/// Fills in `record.shard`, which `merge` needs, and adds a note on the basis of a shard's
-/// verdicts. `places` are those of each suite's tests in the record.
+/// Fills in `record.shard`, which `merge` needs, and the note. `places` are those of each suite's
+/// tests in the record.
 void add_shard(const SuiteRuns& runs, const RunOptions& options,
                std::vector<std::vector<reports::FamilyResult>> places, reports::Record& record);
 
@@ -134,10 +133,9 @@ struct ShardFile {
 };
 
 /// The record of the whole run, with Holm over each suite's family. It equals one run's record byte
-/// for byte, except for suites marked `timed`, times and threads. The first shard gives `started`;
-/// the run's `seconds` are the sum. Shards may come in any order. The tests of a missing shard are
-/// skipped. InputError with file names for a record that is no shard, and for a doubled shard.
-/// InputError also for different suites, data files, seeds, options, versions or instruction sets.
+/// for byte, except for suites marked `timed`, times and threads. Shards may come in any order. A
+/// missing one's tests are missing. InputError, with file names, unless all are shards of one run,
+/// each given once.
 reports::Record merge(std::vector<ShardFile> shards);
 
 /// Reads, merges and reports. Returns the exit code of the whole run, 1 if a shard is missing.

@@ -530,7 +530,7 @@ std::vector<ChannelData> data_of(const DrawnTest& test, std::size_t channel) {
       for (const std::size_t each : channels.all())
         data.back().all_values.push_back(sample.values(each));
     }
-    if (plan.method.keeps == Keeps::images) data.back().images = images_of(test, subject);
+    if (plan.method.keeps == Keeps::images) data.back().images = {sample.images(), channels};
     if (plan.method.keeps == Keeps::blocks) {
       data.back().replicates = replicates_of(test, subject, index);
     }

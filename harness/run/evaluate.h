@@ -63,9 +63,6 @@ Reason excludes_no(const std::string& what, const TestOutcome& outcome);
 /// Settings of the family's test at the current look. They refer to `test`.
 ImageTest image_test(const DrawnTest& test);
 
-/// The observations of this look: the subject's elements of each.
-ImageViews images_of(const DrawnTest& test, std::size_t subject);
-
 /// True if a place of the images rejects the claim, and not their distance over all pixels alone.
 bool is_told_by_place(const TestOutcome& outcome, const ChannelOutcome& channel);
 

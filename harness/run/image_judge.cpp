@@ -131,10 +131,6 @@ ImageTest image_test(const DrawnTest& test) {
           .require_independent = [&](const auto& found) { require_independent(test, found); }};
 }
 
-ImageViews images_of(const DrawnTest& test, std::size_t subject) {
-  return {test.samples[subject].images(), test.outcome.question.subjects[subject].channels};
-}
-
 bool is_told_by_place(const TestOutcome& outcome, const ChannelOutcome& channel) {
   return channel.image && channel.image->family.log_p <= std::log(outcome.place.share.alpha);
 }
