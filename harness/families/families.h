@@ -14,10 +14,8 @@ namespace assay::harness {
 const Theta& theta_of_means();
 const Theta& theta_of_biases();
 const Theta& theta_of_images();
-const Theta& theta_of_bias_images();
 const Theta& theta_of_image_laws();
 const Theta& theta_of_variances();
-const Theta& theta_of_worst_variances();
 const Theta& theta_of_costs();
 const Theta& theta_of_efficiencies();
 const Theta& theta_of_total_variances();
@@ -37,8 +35,6 @@ stats::Influence cost_of(const Seen& seen, std::size_t subject);
 stats::JointMoments powers_of_values(const ChannelData& data);
 /// The truth of a subject's mean: its number, or the mean of the drawn reference.
 Constant truth_of(const Seen& seen, std::size_t subject);
-/// The known reference of a bias: ", reference 2.5"; "" if it is sampled.
-std::string reference_text(const Question& question);
 /// ", red" if the question has several channels.
 std::string channel_suffix(const Question& question, std::size_t channel);
 

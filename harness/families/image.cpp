@@ -221,6 +221,8 @@ class ImageTheta : public Theta {
   std::string circumstances(const Question&) const override { return " in every pixel"; }
 
   bool is_relative(const Question& question, std::size_t) const override {
+    const bool of_a_bias = question.test->claim.left.row->relative_to_0;
+    if (of_a_bias) return has_margin(*question.test, true);
     return !has_margin(*question.test, false) && !is_against_darkness(question);
   }
 
@@ -304,17 +306,6 @@ class ImageTheta : public Theta {
   }
 };
 
-class BiasImageTheta final : public ImageTheta {
- public:
-  const Theta* of_pairs() const override { return nullptr; }
-  std::string circumstances(const Question& question) const override {
-    return reference_text(question) + ImageTheta::circumstances(question);
-  }
-  bool is_relative(const Question& question, std::size_t) const override {
-    return has_margin(*question.test, true);
-  }
-};
-
 /// Theta is the size of the mean of differences of images that share their random numbers.
 class PairedImageTheta final : public ImageTheta {
  public:
@@ -383,6 +374,5 @@ const Theta* ImageTheta::of_pairs() const { return &one<PairedImageTheta>(); }
 
 const Theta& theta_of_images() { return one<ImageTheta>(); }
 const Theta& theta_of_image_laws() { return one<ImageLawTheta>(); }
-const Theta& theta_of_bias_images() { return one<BiasImageTheta>(); }
 
 }  // namespace assay::harness

@@ -657,21 +657,12 @@ class MeanTheta : public Theta {
 class BiasTheta final : public MeanTheta {
  public:
   Question bind(const TestEntry& test, const Estimators& estimators) const override;
-  const Theta* of_images() const override { return &theta_of_bias_images(); }
   bool is_relative(const Question& question, std::size_t) const override {
     return has_margin(*question.test, true);
-  }
-  std::string circumstances(const Question& question) const override {
-    return reference_text(question);
   }
 };
 
 }  // namespace
-
-std::string reference_text(const Question& question) {
-  if (question.test->reference || question.of_two() || question.references.empty()) return "";
-  return fmt::format(", reference {}", question.references[0].value);
-}
 
 std::string channel_suffix(const Question& question, std::size_t channel) {
   return question.channel_count() > 1 ? ", " + question.channel_name(channel) : "";

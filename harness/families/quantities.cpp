@@ -43,7 +43,7 @@ const std::vector<QuantityRow>& quantities() {
       {.word = "worst_variance",
        .example = "worst_variance(a) <= 2",
        .summary = "The largest variance of any channel.",
-       .theta = &theta_of_worst_variances(),
+       .theta = &theta_of_variances(),
        .tested_as_a_ratio = true,
        .over_all_channels = true,
        .told_by_moments = true},

@@ -311,7 +311,7 @@ constexpr MethodTraits for_normal_values{.of_normal_values = true,
                                          .over_looks = stats::LookLaw::independent_increments};
 
 /// theta = ln(Var x / v0), or ln(Var x / (c Var y)), each of one primary if the estimator averages.
-class VarianceTheta : public LogTheta {
+class VarianceTheta final : public LogTheta {
  public:
   VarianceTheta()
       : LogTheta({.logarithm = true, .of_moments = true, .of_spread = true},
@@ -332,6 +332,21 @@ class VarianceTheta : public LogTheta {
     if (!test.plan.method.is.of_normal_values) return LogTheta::choose(test, pilots);
     for (std::size_t i = 0; i < channels.size(); ++i) note(test.plan, channels[i], gates[i]);
     return secondaries_of_floor(test);
+  }
+
+  /// Allows "at most" and "below" for the largest variance of several channels: every channel's is
+  /// bounded then.
+  Question bind(const TestEntry& test, const Estimators& estimators) const override {
+    const Claim& claim = test.claim;
+    Question question = Theta::bind(test, estimators);
+    const std::size_t channels = question.channel_count();
+    const bool bounds_each = is_upper(claim.relation) && !question.of_two();
+    if (claim.left.row->over_all_channels && channels > 1 && !bounds_each) {
+      refuse(claim.left.where,
+             "`{}` of {} channels can only be claimed to be below a number (`<=` or `<`)",
+             claim.left.row->word, channels);
+    }
+    return question;
   }
 
   std::string caveat(const DrawnTest& test) const override {
@@ -377,23 +392,6 @@ class VarianceTheta : public LogTheta {
   // Fewer do not tell a kurtosis.
   bool tells(const ChannelData& data) const override { return data.moments.count >= 4; }
   double log_null(const Seen& seen) const override { return std::log(null_of(seen)); }
-};
-
-/// Allows "at most" and "below" for the largest variance of several channels: every channel's is
-/// bounded then.
-class WorstVarianceTheta final : public VarianceTheta {
- public:
-  Question bind(const TestEntry& test, const Estimators& estimators) const override {
-    const Claim& claim = test.claim;
-    const std::size_t channels = estimates(claim.left.source, estimators).channels.size();
-    const bool number = std::holds_alternative<Constant>(claim.right);
-    if (channels == 1 || (is_upper(claim.relation) && number)) {
-      return VarianceTheta::bind(test, estimators);
-    }
-    refuse(claim.left.where,
-           "`worst_variance` of {} channels can only be claimed to be below a number (`<=` or `<`)",
-           channels);
-  }
 };
 
 // ---- Costs, efficiencies and total variances
@@ -648,7 +646,6 @@ Question EfficiencyTheta::bind(const TestEntry& test, const Estimators& estimato
 }
 
 const Theta& theta_of_variances() { return one<VarianceTheta>(); }
-const Theta& theta_of_worst_variances() { return one<WorstVarianceTheta>(); }
 const Theta& theta_of_costs() { return one<CostTheta>(); }
 const Theta& theta_of_efficiencies() { return one<EfficiencyTheta>(); }
 const Theta& theta_of_total_variances() { return one<TotalVarianceTheta>(); }

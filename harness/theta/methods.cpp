@@ -111,11 +111,16 @@ Method find_method(const Question& question, const std::string& name) {
 
 std::string null_hypothesis(const Question& question, std::size_t channel) {
   const TestEntry& test = *question.test;
-  std::string text = fmt::format("{} {} {}", to_string(test.claim.left), relation_text(test),
+  const Quantity& left = test.claim.left;
+  std::string text = fmt::format("{} {} {}", to_string(left), relation_text(test),
                                  question.theta->claimed_value(question, channel));
-  if (test.reference) text += fmt::format(", reference mean({})", to_string(*test.reference));
+  if (test.reference) {
+    text += fmt::format(", reference mean({})", to_string(*test.reference));
+  } else if (left.row->relative_to_0 && !left.slope) {
+    text += fmt::format(", reference {}", question.references[channel].value);
+  }
   text += question.theta->circumstances(question);
-  if (test.claim.left.row->counts_cost) {
+  if (left.row->counts_cost) {
     text += fmt::format(", cost in {}", cost_words[static_cast<std::size_t>(test.cost)]);
   }
   if (test.over) text += fmt::format(" over {}", test.over->parameter);
