@@ -114,7 +114,9 @@ class DrawsTheta : public Theta {
   }
 
  protected:
-  virtual CountedProbability counted(const Question&) const = 0;
+  virtual CountedProbability counted(const Question& question) const {
+    return {.value = question.references[0].value};
+  }
 
  private:
   const Draws draws_;
@@ -149,10 +151,6 @@ class InconsistencyTheta final : public DrawsTheta {
 
   std::string caveat(const DrawnTest& test) const override { return first_contradiction(test); }
 
- protected:
-  CountedProbability counted(const Question& question) const override {
-    return {.value = question.references[0].value};
-  }
 };
 
 }  // namespace

@@ -12,7 +12,7 @@ namespace {
 
 /// Columns of one file are dependent samples.
 void require_different_data(const Question& question, const Claim& claim) {
-  // Two estimators of one run have their own streams (`separate_pair`).
+  // Two estimators of one run have their own streams (`separate_streams`).
   if (as_recorded_run(*question.subjects[0].setup) != nullptr) return;
   const std::string first = question.subjects[0].setup->data_file();
   const auto same = [&](const Subject& other) { return other.setup->data_file() == first; };
@@ -30,27 +30,22 @@ void require_different_data(const Question& question, const Claim& claim) {
          first);
 }
 
-/// Gives the second of two sources with one key a stream of its own, if it is drawn.
-bool separate_pair(Subject& first, Subject& second, const Claim& claim, std::uint64_t seed) {
-  if (!(stream_of(first, seed) == stream_of(second, seed))) return false;
-  if (first.setup->data_stream() && second.setup->data_stream()) {
-    refuse(claim.left.where,
-           "both sides were drawn from the same stream, so they are not independent; draw one of "
-           "them with another `--seed`");
-  }
-  ++(second.setup->data_stream() ? first : second).copy;
-  return true;
-}
-
-/// Sources with one key would draw the same numbers: all but one get streams of their own.
+/// Sources with one key would draw the same numbers: all but one get streams of their own. What was
+/// drawn before keeps its stream.
 void separate_streams(Question& question, const Claim& claim, std::uint64_t seed) {
-  std::vector<Subject>& subjects = question.subjects;
-  for (bool moved = true; moved;) {
-    moved = false;
-    for (std::size_t i = 0; i < subjects.size(); ++i) {
-      for (std::size_t j = i + 1; j < subjects.size(); ++j) {
-        moved = separate_pair(subjects[i], subjects[j], claim, seed) || moved;
+  std::vector<StreamKey> taken;
+  for (const bool is_drawn : {false, true}) {
+    for (Subject& subject : question.subjects) {
+      if (subject.setup->data_stream().has_value() == is_drawn) continue;
+      while (std::ranges::count(taken, stream_of(subject, seed)) > 0) {
+        if (!is_drawn) {
+          refuse(claim.left.where,
+                 "both sides were drawn from the same stream, so they are not independent; draw "
+                 "one of them with another `--seed`");
+        }
+        ++subject.copy;
       }
+      taken.push_back(stream_of(subject, seed));
     }
   }
 }
