@@ -92,7 +92,7 @@ class DrawsTheta : public Theta {
   void check_margin(const Question&, const Margin& margin) const override {
     require_absolute(margin, "this is a probability");
   }
-  double known_size(const Question&) const override { return 0; }
+  double known_size(const Question&, const Pilots*) const override { return 0; }
 
   /// Draws that show a probability off by `detect`. Exact binomial tests are planned as normal
   /// ones, plus z^2 / room for discreteness.
@@ -150,7 +150,6 @@ class InconsistencyTheta final : public DrawsTheta {
                    inconsistency) {}
 
   std::string caveat(const DrawnTest& test) const override { return first_contradiction(test); }
-
 };
 
 }  // namespace

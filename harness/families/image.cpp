@@ -248,11 +248,13 @@ class ImageTheta : public Theta {
                                     share.beta, impossible_secondaries);
   }
   /// The root mean square of an element.
-  double piloted_size(const Question& question, const Pilots& pilots) const override {
-    if (!question.of_two() || !all_pictured(question, pilots)) return 0;
+  double known_size(const Question& question, const Pilots* pilots) const override {
+    if (!question.of_two() || pilots == nullptr || !all_pictured(question, *pilots)) {
+      return Theta::known_size(question, pilots);
+    }
     const Subject& second = question.subjects[1];
-    const ImageViews views = pilot_views(second, pilots);
-    const PictureLook* const look = pilot_of(second, pilots)->sums->look();
+    const ImageViews views = pilot_views(second, *pilots);
+    const PictureLook* const look = pilot_of(second, *pilots)->sums->look();
     const stats::ImageStack stack{extent_of(*second.image), views.images()};
     const stats::ChannelMeans means =
         look != nullptr ? look->means[1] : stats::channel_means(stack, on_all_threads);

@@ -394,15 +394,19 @@ class MeanTheta : public Theta {
   Question bind(const TestEntry& test, const Estimators& estimators) const override;
   const Theta* of_images() const override { return &theta_of_images(); }
 
-  double known_size(const Question& question) const override {
-    double largest = Theta::known_size(question);
-    if (!question.of_two()) return largest;
-    for (const Channel& channel : question.subjects[1].declared()) {
-      const double mean = question.factor * channel.mean.value_or(0);
-      const double error = std::abs(question.factor) * channel.rounding;
-      largest = std::max(largest, size_beyond_error(mean, error));
+  double known_size(const Question& question, const Pilots* pilots) const override {
+    if (!question.of_two()) return Theta::known_size(question, pilots);
+    const Subject& second = question.subjects[1];
+    const Pilot* const pilot = pilots != nullptr ? pilot_of(second, *pilots) : nullptr;
+    double size = 0;
+    for (std::size_t i = 0; i < second.channels.size(); ++i) {
+      const Channel channel = second.declared(i);
+      size = std::max(size, size_beyond_error(channel.mean.value_or(0), channel.rounding));
+      const Moments seen = pilot != nullptr ? pilot_channel(second, *pilot, i).moments : Moments();
+      if (seen.count <= 1) continue;
+      size = std::max(size, size_beyond_error(seen.mean, seen.standard_error()));
     }
-    return largest;
+    return std::abs(question.factor) * size;
   }
 
   bool is_relative(const Question& question, std::size_t channel) const override {
@@ -476,20 +480,6 @@ class MeanTheta : public Theta {
     const auto count = exact_secondaries(test, *channel, rates);
     const std::uint64_t most = channel->unseen ? most_for_the_unseen : impossible_secondaries;
     return std::min(count.value_or(impossible_secondaries), most);
-  }
-
-  double piloted_size(const Question& question, const Pilots& pilots) const override {
-    if (!question.of_two()) return 0;
-    const Subject& second = question.subjects[1];
-    const Pilot* const pilot = pilot_of(second, pilots);
-    if (pilot == nullptr) return 0;
-    double size = 0;
-    for (std::size_t channel = 0; channel < second.channels.size(); ++channel) {
-      const Moments moments = pilot_channel(second, *pilot, channel).moments;
-      if (moments.count <= 1) continue;
-      size = std::max(size, size_beyond_error(moments.mean, moments.standard_error()));
-    }
-    return std::abs(question.factor) * size;
   }
 
   PlannedChannel observed(const Seen& seen, const Regions& regions) const override {

@@ -212,7 +212,7 @@ class SlopeTheta final : public Theta {
   void check_margin(const Question&, const Margin& margin) const override {
     require_absolute(margin, "a slope is an exponent");
   }
-  double known_size(const Question&) const override { return 0; }
+  double known_size(const Question&, const Pilots*) const override { return 0; }
 
   std::uint64_t choose(TestOutcome& test, const Pilots&) const override {
     const std::uint64_t floor = secondaries_of_floor(test);

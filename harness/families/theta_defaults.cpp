@@ -54,7 +54,7 @@ void Theta::check_margin(const Question& question, const Margin& margin) const {
   }
 }
 
-double Theta::known_size(const Question& question) const {
+double Theta::known_size(const Question& question, const Pilots*) const {
   double largest = 0;
   for (std::size_t i = 0; i < question.references.size(); ++i) {
     const Constant& reference = question.references[i];

@@ -106,7 +106,7 @@ std::string unusable_pilot(const Question& question, const Pilots& pilots) {
 /// A margin larger than the other side, which `ask_as_written` cannot know; "" if there is none.
 std::string larger_than_other_side(const Question& question, const Pilots& pilots) {
   if (question.written.empty() || !has_margin(*question.test, false)) return "";
-  const double size = question.theta->piloted_size(question, pilots);
+  const double size = question.theta->known_size(question, &pilots);
   for (const Margin& margin : question.written) {
     if (const auto text = missing_per_cent(margin, size); !text.empty())
       return "the margin " + text;
@@ -153,6 +153,14 @@ std::uint64_t wanted_primaries(const Question& question, const FamilyPlace& plac
     wanted = std::max(wanted, stats::primaries_for_variance(pilot.kurtosis() - 3, limit));
   }
   return wanted;
+}
+
+/// `detect`, if it is not in per cent, as a part of the claimed number or image; 0 of another.
+double part_of_size(const Question& question, const Pilots& pilots) {
+  const std::optional<Margin>& detect = question.test->detect;
+  if (!detect || detect->relative) return 0;
+  const double size = question.theta->known_size(question, &pilots);
+  return size > 0 ? detect->value / size : 0;
 }
 
 // ---- Looks
@@ -538,12 +546,8 @@ TestOutcome plan_test(Question asked, const FamilyPlace& place, const Pilots& pi
 
 std::string doubtful_margin(const Question& question, const Pilots& pilots) {
   constexpr double large = 0.1, small = 1e-4;
-  const std::optional<Margin>& detect = question.test->detect;
-  if (!detect || detect->relative) return "";
-  const double size = std::max(question.theta->known_size(question),
-                               question.theta->piloted_size(question, pilots));
-  const double part = detect->value / size;
-  if (!(size > 0) || (part >= small && part <= large)) return "";
+  const double part = part_of_size(question, pilots);
+  if (part == 0 || (part >= small && part <= large)) return "";
   return fmt::format(
              fmt::runtime(part > large
                               ? "errors below `detect`, {:.3g} % of what is claimed, may pass"

@@ -92,7 +92,7 @@ std::vector<Margin> margins_of(const TestEntry& test) {
 
 void refuse_missing_per_cent(const Question& question) {
   const QuantityRow& quantity = *question.test->claim.left.row;
-  const double size = question.theta->known_size(question);
+  const double size = question.theta->known_size(question, nullptr);
   for (const Margin& margin : margins_of(*question.test)) {
     if (quantity.is_a_probability() && margin.value >= 1) {
       refuse(margin.where,

@@ -112,8 +112,9 @@ class Theta {
   virtual void check(const Question&) const {}
   /// Throws InputError if the margin has no meaning here.
   virtual void check_margin(const Question&, const Margin&) const;
-  /// The largest size known before drawing that margins may be relative to; 0 if nothing tells.
-  virtual double known_size(const Question&) const;
+  /// The largest size that margins may be relative to, as the claim or the second side's pilot
+  /// shows it; 0 if nothing tells.
+  virtual double known_size(const Question&, const Pilots*) const;
 
   // ---- The scale
 
@@ -148,8 +149,6 @@ class Theta {
   virtual std::string why_impossible(const Question&) const;
   /// Why the planned secondaries are too few.
   virtual std::string too_few(const TestOutcome&) const { return ""; }
-  /// The size of the second of two sides as its pilot shows it; 0 if nothing tells.
-  virtual double piloted_size(const Question&, const Pilots&) const { return 0; }
 
   // ---- Power. `channel` is from pilots or from the test's own data.
 
