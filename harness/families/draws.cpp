@@ -73,7 +73,7 @@ class DrawsTheta : public Theta {
  public:
   /// `tests` counts the sampler's `draws`.
   DrawsTheta(Draws draws, const char* summary, Evidence (*tests)(const Seen&))
-      : Theta({.of_single_values = true},
+      : Theta({.of_single_values = true, .absolute = "this is a probability"},
               {{"binomial", summary, any_question, Keeps::cells, tests, exact_at_any_size}}),
         draws_(draws) {}
 
@@ -89,11 +89,6 @@ class DrawsTheta : public Theta {
             .subjects = {draws(source, estimators, draws_)},
             .references = {std::get<Constant>(test.claim.right)}};
   }
-  void check_margin(const Question&, const Margin& margin) const override {
-    require_absolute(margin, "this is a probability");
-  }
-  double known_size(const Question&, const Pilots*) const override { return 0; }
-
   /// Draws that show a probability off by `detect`. Exact binomial tests are planned as normal
   /// ones, plus z^2 / room for discreteness.
   std::optional<std::uint64_t> secondaries(const TestOutcome& test, const ErrorShare& share,

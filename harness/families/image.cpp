@@ -291,9 +291,6 @@ class ImageTheta : public Theta {
 
   /// Other cells see the same difference in a few pixels, or of both signs, from other sizes on.
   const char* detectable_text() const override { return " all over the image"; }
-  std::string where_it_differs(const DrawnTest& test) const override {
-    return means_where_it_differs(test);
-  }
   std::string caveat(const DrawnTest& test) const override {
     const Question& question = test.outcome.question;
     const ScaledQuantity* const other = other_side(question.test->claim);

@@ -200,7 +200,10 @@ class SlopeTheta final : public Theta {
  public:
   explicit SlopeTheta(bool of_spread)
       : Theta(
-            {.of_spread = of_spread, .fit_decides = true, .may_be_unbounded = true},
+            {.of_spread = of_spread,
+             .fit_decides = true,
+             .may_be_unbounded = true,
+             .absolute = "a slope is an exponent"},
             {{"slope", "fit of a power law: costs over a parameter", of_costs, Keeps::costs, slope},
              {"slope", "fit of a power law: variances over a parameter",
               [](const Question& q) { return q.is().of_spread; }, Keeps::powers, slope},
@@ -208,11 +211,6 @@ class SlopeTheta final : public Theta {
               [](const Question& q) { return !of_logarithms(q); }, Keeps::moments, slope}}) {}
 
   Question bind(const TestEntry& test, const Estimators& estimators) const override;
-
-  void check_margin(const Question&, const Margin& margin) const override {
-    require_absolute(margin, "a slope is an exponent");
-  }
-  double known_size(const Question&, const Pilots*) const override { return 0; }
 
   std::uint64_t choose(TestOutcome& test, const Pilots&) const override {
     const std::uint64_t floor = secondaries_of_floor(test);

@@ -49,6 +49,7 @@ std::string Theta::claimed_value(const Question& question, std::size_t channel) 
 }
 
 void Theta::check_margin(const Question& question, const Margin& margin) const {
+  if (is.absolute != nullptr) require_absolute(margin, is.absolute);
   for (const Constant& reference : question.references) {
     if (reference.value == 0) require_absolute(margin, "the reference is zero");
   }
@@ -56,6 +57,7 @@ void Theta::check_margin(const Question& question, const Margin& margin) const {
 
 double Theta::known_size(const Question& question, const Pilots*) const {
   double largest = 0;
+  if (is.absolute != nullptr) return largest;
   for (std::size_t i = 0; i < question.references.size(); ++i) {
     const Constant& reference = question.references[i];
     const double rounding = question.subjects[0].declared(is.joins_channels ? 0 : i).rounding;

@@ -72,17 +72,18 @@ std::string sentence_of(const Fault& fault, const Subject& subject, const std::s
 
 /// Facts about a theta that others act on.
 struct ThetaTraits {
-  bool joins_channels = false;    ///< All channels together make one number.
-  bool logarithm = false;         ///< Theta is the logarithm of a ratio.
-  bool of_moments = false;        ///< The moments of single channels tell theta and its error.
-  bool of_spread = false;         ///< Theta is or contains a variance.
-  bool of_single_values = false;  ///< Theta is about the law of observations, not their mean.
-  bool of_a_law = false;          ///< Theta is a distance between distribution functions.
-  bool of_images = false;         ///< All elements of images are compared together.
-  bool of_pairs = false;          ///< Observations share random numbers and are subtracted.
-  bool batches_serve = false;     ///< Means of consecutive rows serve as well as the rows.
-  bool fit_decides = false;       ///< Without a fit, a rejected theta says nothing: no pass.
-  bool may_be_unbounded = false;  ///< Data may exclude nothing at all (Theta::not_excluded).
+  bool joins_channels = false;     ///< All channels together make one number.
+  bool logarithm = false;          ///< Theta is the logarithm of a ratio.
+  bool of_moments = false;         ///< The moments of single channels tell theta and its error.
+  bool of_spread = false;          ///< Theta is or contains a variance.
+  bool of_single_values = false;   ///< Theta is about the law of observations, not their mean.
+  bool of_a_law = false;           ///< Theta is a distance between distribution functions.
+  bool of_images = false;          ///< All elements of images are compared together.
+  bool of_pairs = false;           ///< Observations share random numbers and are subtracted.
+  bool batches_serve = false;      ///< Means of consecutive rows serve as well as the rows.
+  bool fit_decides = false;        ///< Without a fit, a rejected theta says nothing: no pass.
+  bool may_be_unbounded = false;   ///< Data may exclude nothing at all (Theta::not_excluded).
+  const char* absolute = nullptr;  ///< Why margins cannot be in per cent; null if they can.
 };
 
 /// A claim, bound to the suite's estimators.

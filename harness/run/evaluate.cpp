@@ -450,7 +450,7 @@ void take_sound_look(TestWork& work, const DrawnTest& test, bool may_go_on) {
     note_sizes(outcome, test);
     if (outcome.message.empty()) {
       Reason reason = narrate(outcome);
-      outcome.message = reason.text + outcome.question.theta->where_it_differs(test);
+      outcome.message = reason.text + where_it_differs(test);
       outcome.advice = std::move(reason.advice);
       if (is_doubted(outcome)) add_caveat(test, outcome);
     }

@@ -83,7 +83,7 @@ std::string others_at(const DrawnTest& test, const PlaceEffect& place);
 
 /// "; at that place it is 3 % too bright (2 to 4 %): 1.03 against 1". It is "" unless one cell
 /// decided a failed claim on images.
-std::string means_where_it_differs(const DrawnTest& test);
+std::string where_it_differs(const DrawnTest& test);
 
 /// Sets the least detectable difference: one that is the same everywhere, by the sum over the whole
 /// image, and one in a typical cell. Not if the claim allows a difference.

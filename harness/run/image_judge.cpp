@@ -200,7 +200,7 @@ std::string others_at(const DrawnTest& test, const PlaceEffect& place) {
   return fmt::format("{}", fmt::join(texts, ", "));
 }
 
-std::string means_where_it_differs(const DrawnTest& test) {
+std::string where_it_differs(const DrawnTest& test) {
   const bool fails = test.outcome.verdict == reports::Verdict::fail;
   const std::vector<ChannelOutcome>& channels = test.outcome.channels;
   if (channels.empty() || !channels[0].image) return "";

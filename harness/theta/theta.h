@@ -194,8 +194,6 @@ class Theta {
   }
   /// How far a detectable theta reaches.
   virtual const char* detectable_text() const { return " or more"; }
-  /// The place where the data of a failed claim differ.
-  virtual std::string where_it_differs(const DrawnTest&) const { return ""; }
   /// A clause that fails need, and passes whose interval excludes the claim: another reason for
   /// what the data say, or the draw that shows it.
   virtual std::string caveat(const DrawnTest&) const { return ""; }
