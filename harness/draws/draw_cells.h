@@ -90,9 +90,8 @@ class DrawCells {
   std::size_t index(const SamplerDraw& draw) const;
   /// "theta 0.1 to 0.2, phi 0 to 0.196"; with several lobes also the lobe.
   std::string describe(std::size_t cell) const;
-  /// The number of cells that are parts of a domain; they come first.
+  /// The number of cells that are parts of a domain, which come first.
   std::size_t in_domain() const { return lobes_end_; }
-  /// The grid of all lobes.
   const stats::PlaneGrid& grid() const { return of_lobes_.front().grid; }
   /// The grid's cell that contains it.
   std::size_t grid_cell(std::size_t cell) const;
@@ -113,7 +112,7 @@ class DrawCells {
   std::vector<int> point_masses_;  ///< their lobes
 };
 
-/// The marginals of a sampler's domain; for an interval with its bounds.
+/// The marginals of the domain; for an interval with its bounds.
 std::vector<Marginal> marginals_of(const Sampler& sampler);
 
 /// The coordinates of cells. They are the marginals, except that a triangle's second is v / (1 -
@@ -130,13 +129,10 @@ SamplerDraw sound(const NamedSampler& named, SamplerDraw draw);
 /// The density at a point. Throws std::domain_error if it is negative or not finite.
 double sound_density(const NamedSampler& named, const Point& point, double density);
 
-// ---- The density that a sampler declares, as stats integrates it.
-
 /// A density at many points. A sampler may write only the first few, and returns how many. Throws
 /// as sound_density().
 using Densities = std::function<std::size_t(std::span<const Point>, std::span<double>)>;
 
-/// Asks until every point has its density.
 void write_all(const Densities& densities, std::span<const Point> points, std::span<double> out);
 
 /// The density of all lobes together. Keeps a reference to the sampler's name.
@@ -177,7 +173,6 @@ struct DensityCells {
   double missing() const;
   /// The cells and, behind them, those of draws where the density is 0.
   std::size_t numbers() const { return 2 * cells.size(); }
-  /// Counts of the cells alone.
   std::vector<std::uint64_t> in_cells(std::span<const std::uint64_t> counts) const;
   /// Counts of draws where the density is 0, by their cells.
   std::span<const std::uint64_t> impossible(std::span<const std::uint64_t> counts) const {

@@ -51,7 +51,6 @@ struct AskedDraw {
   double evaluation = 0;
 };
 
-/// The numbers of its draws' points that a sampler is asked for.
 enum class PointNumbers { none, densities, densities_and_evaluations };
 
 /// Draws of announced observations, fetched many at a time: a sampler in another program takes
@@ -125,8 +124,6 @@ std::shared_ptr<const SamplerSetup> sampler_setup(const NamedSampler& named, con
 
 /// The draw of observation `index` and what the sampler declares at its point, with all digits.
 std::string draw_text(const Sampler& sampler, StreamKey key, std::uint64_t index);
-
-// ---- Tests draw by draw that a sampler agrees with what it declares, and where it does not.
 
 /// A sampler's draws as observations of two channels. Channel `difference` is how far a draw is
 /// from what its sampler declares. Channel `inconsistent` is 0 if that is at most the sampler's

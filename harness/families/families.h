@@ -29,7 +29,7 @@ const Theta& theta_of_variance_slopes();
 /// Says which compared subject's sample has no spread, so that its error is unknown; "" if all
 /// have.
 std::string lack_of_spread(const Seen& seen);
-/// The mean cost of a primary.
+/// The cost of a primary.
 stats::Influence cost_of(const Seen& seen, std::size_t subject);
 /// The powers of a channel's values, as far as they are kept: a cost means nothing.
 stats::JointMoments powers_of_values(const ChannelData& data);
@@ -38,7 +38,7 @@ Constant truth_of(const Seen& seen, std::size_t subject);
 /// ", red" if the question has several channels.
 std::string channel_suffix(const Question& question, std::size_t channel);
 
-/// Prior knowledge of one channel of one subject.
+/// A channel of one subject before the test.
 struct Known {
   std::size_t subject;
   std::size_t channel;

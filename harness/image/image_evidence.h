@@ -21,8 +21,6 @@
 
 namespace assay::harness {
 
-// ---- The images of a claim, and what of them varied
-
 stats::ImageExtent extent_of(const ImageShape& shape);
 
 /// Replicates of an image, and their comparison: replicates of another image, scaled, or a number
@@ -57,9 +55,6 @@ struct ImagePair {
   stats::ChangedImages settled_;
 };
 
-// ---- Evidence
-
-/// Settings of the family's test.
 struct ImageTest {
   ErrorShare share = {};              ///< Share of this look.
   const PictureLook* look = nullptr;  ///< Look at pictures, taken while reading.
@@ -79,7 +74,6 @@ struct ImageOutcome {
   std::optional<double> detectable_in_cell = {};  ///< As ChannelOutcome::detectable.
 };
 
-/// One channel's evidence; of images also their findings.
 struct ChannelEvidence {
   Evidence evidence;
   std::optional<ImageOutcome> image = {};
@@ -94,7 +88,6 @@ ChannelEvidence evidence_of_image_laws(const Seen& seen, const ImageTest& test);
 /// The squared bias's share of alpha beside the family. It is 0 against one picture.
 double share_of_distance(const Question& question);
 
-/// Indices of a window's elements in a question.
 std::vector<std::size_t> elements_of(const stats::ImageFinding& finding, const ImageShape& shape);
 
 struct PlaceText {

@@ -1,14 +1,6 @@
 #pragma once
 
-// The claim language: one line that reads as the hypothesis.
-//
-//  `claim    = quantity relation side
-//   side     = [ number "*" ] quantity | number [ "+-" number ] | "analytic" | law
-//   quantity = name "(" source { "," number } ")" | "slope" "(" quantity ")"
-//   source   = estimator [ "." part ]
-//   name     = mean | bias | variance | total_variance | worst_variance | quantile | efficiency |
-//              cost | distribution | integral | inconsistency
-//   relation = "==" | "<=" | ">=" | "<" | ">" | "within" margin "of"`
+// The claim language: one line that reads as the hypothesis. Its grammar is in suites/README.md.
 
 #include <string>
 #include <string_view>
@@ -42,7 +34,7 @@ struct Source {
 
 /// A row of the table of quantities, which is in families/.
 struct QuantityRow {
-  std::string word;     ///< The word in claims.
+  std::string word;
   std::string example;  ///< A claim about it.
   std::string summary;
   const Theta* theta;  ///< The theta of a claim about it, unless of images or a slope.
@@ -126,20 +118,11 @@ Claim parse_claim(std::string_view text, const Location& where);
 /// Parses "0.5%" or "0.002". InputError otherwise, and for a negative or infinite number.
 Margin parse_margin(std::string_view text, const Location& where, std::string_view what);
 
-/// "0.5%" or "0.002".
 std::string to_string(const Margin&);
-
-/// "0.481" or "0.481 +- 0.0001".
 std::string to_string(const Constant&);
-/// "normal(0, 1)" or "density".
 std::string to_string(const Law&);
-
-/// "estimator" or "estimator.part".
 std::string to_string(const Source&);
-
-/// "quantile(area.red, 0.5)", "slope(bias(wis))".
 std::string to_string(const Quantity&);
-/// "2 * mean(b)".
 std::string to_string(const ScaledQuantity&);
 
 /// The claim in one spelling: shortest round-trip numbers, one blank around a relation.

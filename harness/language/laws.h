@@ -24,7 +24,7 @@ struct LawInformation {
 /// All laws that a claim can name except `density`, the sampler's own.
 const std::vector<LawInformation>& laws();
 
-/// The law with that name, or nullptr.
+/// Null if there is none.
 const LawInformation* find_law(std::string_view name);
 
 /// InputError at the law's place for a wrong number of arguments or an argument out of range.

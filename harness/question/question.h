@@ -24,13 +24,13 @@ struct Fault;
 
 class Theta;
 
-/// One side of a claim: an estimator's secondary estimates, or a sampler's draws.
+/// One side of a claim: secondary estimates, or a sampler's draws.
 struct Subject {
   const PreparedEstimator* estimator;
   std::shared_ptr<const Setup> setup;
   std::string purpose = "";  ///< Separates a sampler's streams from its estimator's.
   std::uint32_t copy = 0;
-  ChannelList channels;  ///< The channels that the claim is about.
+  ChannelList channels;
   bool averages = true;  ///< True if the variance falls like 1 / primaries.
   std::optional<ImageShape> image = {};
   /// Owns `estimator` if it is a point of a sweep.
@@ -41,9 +41,7 @@ struct Subject {
     return std::min(look, setup->observations().value_or(look));
   }
 
-  /// The set-up's declaration of a channel that the claim is about.
   Channel declared(std::size_t channel) const { return setup->channel(channels[channel]); }
-  /// The same of each of these channels.
   auto declared() const {
     return std::views::iota(std::size_t{0}, channels.size()) |
            std::views::transform([this](std::size_t channel) { return declared(channel); });
@@ -86,7 +84,6 @@ struct ThetaTraits {
   const char* absolute = nullptr;  ///< Why margins cannot be in per cent; null if they can.
 };
 
-/// A claim, bound to the suite's estimators.
 struct Question {
   const TestEntry* test;
   const Theta* theta;             ///< The number that the claim is about.
@@ -110,7 +107,6 @@ struct Question {
     return is().joins_channels ? 1 : subjects[0].channels.size();
   }
   std::string channel_name(std::size_t channel) const;
-  /// The number of subjects without the reference.
   std::size_t compared() const { return subjects.size() - (has_reference_subject ? 1 : 0); }
   /// The most ready-made observations of a subject; nullopt if all subjects are drawn.
   std::optional<std::uint64_t> most_rows() const;
@@ -123,7 +119,6 @@ struct Question {
   double mapped(double second) const { return factor * second + offset; }
 };
 
-/// True if any subject's observations are ready-made.
 inline bool has_rows(const Question& question) {
   return std::ranges::any_of(question.subjects, is_recorded);
 }
@@ -156,13 +151,12 @@ void require_one_size(const Question& question);
 /// one side alone. Both are images.
 void require_equal_pixels(const Question& question, const Subject& other);
 
-/// The stream of a subject's observations.
 StreamKey stream_of(const Subject& subject, std::uint64_t seed);
 
 /// Gives the draws of a sampler cells by the suite's seed (SamplerSetup), the same in a replay.
 void seed_cells(Subject& subject, const Location& where, std::uint64_t seed);
 
-/// The quantity on the right; null if there is another side.
+/// Null if a number or a law stands on the right.
 const ScaledQuantity* other_side(const Claim& claim);
 
 /// The true mean of each channel: the number of `reference:`, else the plugin's; zeros if it is
@@ -177,7 +171,6 @@ void add_reference(Question& question, const Estimators& estimators);
 /// drawing.
 void require_drawn(const Question& question);
 
-/// InputError for a margin in per cent.
 void require_absolute(const Margin& margin, const char* reason);
 
 /// The largest relative error of a number that is drawn: an image's are in single precision.

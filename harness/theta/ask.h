@@ -17,7 +17,6 @@ namespace assay::harness {
 /// swept value that the plugin refuses.
 Question ask(const TestEntry& test, const Estimators& estimators, std::uint64_t seed);
 
-/// True if a subject is an image.
 bool has_image(const Question& question);
 
 /// The default `detect` of a claim about laws.
@@ -40,8 +39,6 @@ inline double size_beyond_error(double value, double standard_error) {
 /// Suggests the per cent spelling of an absolute margin larger than its reference `size`; "" for
 /// other margins.
 std::string missing_per_cent(const Margin& margin, double size);
-
-// The scale that theta is on: absolute, relative to a mean, or the logarithm of a ratio.
 
 /// Divisor of a channel's theta: |reference| or |factor * other_mean| if theta is relative, else
 /// 1. `other_mean` counts only if the claim compares two.

@@ -87,10 +87,9 @@ struct Regions {
   stats::Range between(double edge) const;
 };
 
-/// Natural logarithm of the p-value of "theta in C".
 double log_p_claimed(const Evidence& evidence, const Regions& regions);
 
-/// Natural logarithm of the p-value of "theta in F"; 0 where there is no F.
+/// 0 where there is no F.
 double log_p_forbidden(const Evidence& evidence, const Regions& regions);
 
 /// The tail of the statistic that speaks against C.
@@ -102,7 +101,6 @@ struct ErrorShare {
   double beta = 0;
 };
 
-/// One channel's p-values. `decide` turns those of all channels into fail, pass or inconclusive.
 struct ChannelDecision {
   double log_p_claimed = 0;
   double log_p_forbidden = 0;

@@ -22,7 +22,6 @@ struct GateKind {
   bool says_what_helps = false;  ///< its sentence does
   Falls falls = Falls::not_known;
 
-  /// If it is red the test goes on, and ends inconclusive.
   bool needs_more() const { return falls != Falls::not_known; }
 };
 
@@ -48,7 +47,7 @@ struct Gate : reports::Gate {
 /// True if more observations mend all red gates.
 bool need_more(const std::vector<Gate>& gates);
 
-/// A gate of this kind. `where` follows the kind in its name.
+/// `where` follows the kind in its name.
 Gate gate_of(const std::string& kind, double value, double limit, const char* state,
              const std::string& where = "");
 Gate gate_of(const stats::Gate& gate, const std::string& where);

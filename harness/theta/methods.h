@@ -47,9 +47,7 @@ struct Seen {
   std::span<const ChannelData> data;
 
   const stats::Moments& moments(std::size_t subject) const { return data[subject].moments; }
-  /// The number that a claim about one estimator names.
   const Constant& reference() const { return question.references[channel]; }
-  /// True if theta is in units of the reference.
   bool relative() const;
 };
 
@@ -88,8 +86,8 @@ inline constexpr MethodTraits of_scores{.over_looks = stats::LookLaw::independen
 
 /// A row of the method table (methods.h). Rows of different families of claims may share a name.
 struct Method {
-  std::string name;     ///< Name in suites and records.
-  std::string summary;  ///< Hypothesis and range of validity, for `assay list methods`.
+  std::string name;
+  std::string summary;  ///< Hypothesis and range of validity.
   bool (*answers)(const Question&);
   Keeps keeps;
   /// Null if the family has evidence of its own (Theta::evidence).
@@ -97,7 +95,6 @@ struct Method {
   MethodTraits is = {};
 };
 
-/// The table. A new method is a row in the file of its family, and a function for its evidence.
 const std::vector<Method>& method_table();
 
 /// The methods that answer a question, the default first; `test:` may force any of them.
@@ -121,7 +118,6 @@ struct Ends {
 /// To reject "too much" takes the low end. An alarm with `detect` rejects both.
 Ends ends_that_decide(const Question& question);
 
-/// The null hypothesis in words and symbols.
 std::string null_hypothesis(const Question& question, std::size_t channel);
 
 }  // namespace assay::harness

@@ -1,8 +1,7 @@
 #pragma once
 
-// Theta is the number that a claim is about. It has a claimed and a forbidden region. A family of
-// claims derives from Theta and answers all that others ask of it. families/ holds one file a
-// family.
+// Theta is the number that a claim is about. It has a claimed and a forbidden region. Each family
+// of claims derives from Theta, in a file of families/.
 
 #include <array>
 #include <cstdint>
@@ -116,11 +115,8 @@ class Theta {
   /// shows it; 0 if nothing tells.
   virtual double known_size(const Question&, const Pilots*) const;
 
-  // ---- The scale
-
   /// True if theta is in units of the reference.
   virtual bool is_relative(const Question&, std::size_t) const { return false; }
-  virtual std::optional<ThetaError> error(const Seen&) const { return std::nullopt; }
 
   // ---- The plan
 
@@ -138,16 +134,13 @@ class Theta {
   /// channel needs, if all subjects have pilots.
   virtual std::optional<std::uint64_t> secondaries(const TestOutcome&, const ErrorShare&,
                                                    const Pilots&) const;
-  /// One channel's number of them; nullopt if nothing tells.
   virtual std::optional<std::uint64_t> secondaries_of(const TestOutcome&, std::size_t /*channel*/,
                                                       const ErrorShare&, const Pilots&) const {
     return std::nullopt;
   }
   /// Secondaries of a claim without a margin.
   virtual std::uint64_t usual_size() const;
-  /// Why no number of secondaries is enough.
   virtual std::string why_impossible(const Question&) const;
-  /// Why the planned secondaries are too few.
   virtual std::string too_few(const TestOutcome&) const { return ""; }
 
   // ---- Power. `channel` is from pilots or from the test's own data.
@@ -172,6 +165,7 @@ class Theta {
 
   // ---- The test's own data
 
+  virtual std::optional<ThetaError> error(const Seen&) const { return std::nullopt; }
   /// The verdict that needs no test: on a channel without spread, or by what no law allows.
   virtual std::optional<ConstantVerdict> settled(const Seen&, const Regions&) const {
     return std::nullopt;
