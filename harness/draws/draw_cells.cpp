@@ -76,8 +76,6 @@ std::vector<double> equal_shares(std::size_t cells) {
   });
 }
 
-// ---- Sound draws
-
 // Ample for single precision and fast reciprocal roots; a direction that was never normalised is
 // off by more.
 constexpr double least_length_slack = 1e-4;
@@ -139,8 +137,6 @@ bool is_plainly_sound(Domain domain, const SamplerDraw& draw) {
   const bool in_square = x >= 0 && x <= 1 && y >= 0 && y <= 1;
   return domain != Domain::interval && in_square && (domain == Domain::square || x + y <= 1);
 }
-
-// ---- The declared density
 
 // More panels of both coordinates together would exceed the limits of the quadrature.
 constexpr std::size_t most_panels = std::size_t{1} << 15;

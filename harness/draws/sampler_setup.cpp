@@ -74,8 +74,6 @@ class SamplerEstimator final : public Estimator {
   AskedDraws draws_{setup_.named(), density_cells_ ? PointNumbers::densities : PointNumbers::none};
 };
 
-// ---- Consistency
-
 double relative_difference(double a, double b) {
   if (a == b) return 0;
   return std::abs(a - b) / std::max(std::abs(a), std::abs(b));

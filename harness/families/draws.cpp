@@ -7,15 +7,12 @@
 #include "harness/families/families.h"
 #include "harness/families/law.h"
 #include "harness/plan/outcome.h"
-#include "harness/question/question.h"
 #include "harness/run/evaluate.h"
 #include "stats/means/binomial.h"
 #include "stats/tails/tails.h"
 
 namespace assay::harness {
 namespace {
-
-// ---- Evidence
 
 std::uint64_t sum(std::span<const std::uint64_t> counts) {
   return std::accumulate(counts.begin(), counts.end(), std::uint64_t{0});
@@ -60,8 +57,6 @@ Evidence inconsistency(const Seen& seen) {
   }
   return evidence;
 }
-
-// ---- Theta
 
 struct CountedProbability {
   double value = 0;

@@ -1,6 +1,7 @@
 #pragma once
 
-// The families offer these to the table of quantities and to each other. Each has one file.
+// The families offer these to the table of quantities and to each other. Each has one file, which
+// has Theta, questions, evidence and plans through this one.
 
 #include <string>
 

@@ -6,9 +6,7 @@
 
 #include "harness/base/work.h"
 #include "harness/families/families.h"
-#include "harness/image/image_evidence.h"
 #include "harness/plan/outcome.h"
-#include "harness/question/question.h"
 #include "harness/run/evaluate.h"
 #include "harness/sampling/image_views.h"
 #include "harness/theta/ask.h"
@@ -16,8 +14,6 @@
 
 namespace assay::harness {
 namespace {
-
-// ---- Binding
 
 const Location& place_of(const Question& question) { return question.test->claim.left.where; }
 
@@ -75,8 +71,6 @@ void require_equal_primaries(const Question& question) {
          words[1]);
 }
 
-// ---- Pairs
-
 std::string counts_text(const Question& question) {
   std::string words;
   for (const Subject& side : question.subjects) {
@@ -128,8 +122,6 @@ void require_partners(const Question& question) {
            first.place_of({.index = i}), second.place_of({.index = i}), keys[i], others[i]);
   }
 }
-
-// ---- Sizes
 
 bool all_pictured(const Question& question, const Pilots& pilots) {
   return std::ranges::all_of(question.subjects, [&](const Subject& side) {
@@ -273,16 +265,12 @@ class ImageTheta : public Theta {
     std::uint64_t fewest = test.plan.most_secondaries();
     for (const Subject& side : question.subjects) fewest = side.secondaries(fewest);
     if (fewest >= stats::least_replicates) return "";
-    const std::string mend =
-        question.test->budget
-            ? "give a larger `budget`, which pays `primaries` for every pixel and component, or "
-              "fewer `primaries`"
-            : fmt::format("take {} `secondaries` or more, with fewer `primaries` if need be",
-                          stats::least_replicates);
     return fmt::format(
-        "{} images are too few: each pixel's variance comes from them alone, and {} are needed to "
-        "tell one pixel of {} from its reference; {}",
-        fewest, stats::least_replicates, question.subjects[0].channels.size(), mend);
+        "{0} images are too few: each pixel's variance comes from them alone, and {1} are needed "
+        "to tell one pixel of {2} from its reference; take {1} `secondaries` or more, or give a "
+        "larger `budget`, which pays `primaries` for every pixel and component, or fewer "
+        "`primaries`",
+        fewest, stats::least_replicates, question.subjects[0].channels.size());
   }
 
   ChannelEvidence evidence(const DrawnTest& test, const Seen& seen) const override {

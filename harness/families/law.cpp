@@ -259,8 +259,6 @@ bool of_whole_draws(const Question& question) {
   return question.subjects[0].declared(0).name == cell_channel;
 }
 
-// ---- Sizes
-
 stats::ErrorRates rates_of(const ErrorShare& share) {
   return {.alpha = share.alpha, .beta = share.beta, .two_sided = false};
 }
@@ -504,8 +502,6 @@ class DensityTheta final : public LawTheta {
 const LawTheta values_theta({.of_single_values = true, .of_a_law = true});
 /// All channels together, in cells.
 const LawTheta planes_theta({.joins_channels = true, .of_single_values = true});
-
-// ---- Binding
 
 /// Cells need one or two coordinates, the same on both sides.
 void require_plane(const Question& question) {

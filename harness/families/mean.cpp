@@ -6,12 +6,8 @@
 
 #include "harness/families/families.h"
 #include "harness/plan/outcome.h"
-#include "harness/question/question.h"
 #include "harness/run/evaluate.h"
 #include "harness/theta/ask.h"
-#include "harness/theta/decision.h"
-#include "harness/theta/methods.h"
-#include "harness/theta/theta.h"
 #include "reports/words/number.h"
 #include "stats/basics/moments.h"
 #include "stats/gates/assumption_gates.h"
@@ -25,8 +21,6 @@ namespace {
 
 using stats::GateState;
 using stats::Moments;
-
-// ---- Evidence
 
 stats::MeanSample sample_of(const stats::MeanTest& test, const Seen& seen, std::size_t subject) {
   const Moments& moments = seen.moments(subject);
@@ -86,8 +80,6 @@ std::string lost_to_rounding(const Seen& seen) {
       seen.question.subjects[worst].estimator->name, seen.moments(worst).mean, rounding, error);
 }
 
-// ---- Binding
-
 std::vector<Constant> recorded_means(const Question& question, const Subject& reference) {
   require_one_size(question);
   if (reference.image) require_equal_pixels(question, reference);
@@ -96,8 +88,6 @@ std::vector<Constant> recorded_means(const Question& question, const Subject& re
                     std::abs(question.factor) * channel.mean_error};
   });
 }
-
-// ---- Ranges
 
 // So few values beyond half the way to an end may be none in the test.
 constexpr std::ptrdiff_t few_values = 32;
@@ -137,8 +127,6 @@ bool bets_on_range(const Question& question, const Pilots& pilots) {
   return hidden;
 }
 
-// ---- Sizes
-
 // Beyond this a constant's unseen values stay undecided: they may not exist.
 constexpr std::uint64_t most_for_the_unseen = 1024 * usual_secondaries;
 // Fewer secondaries of a pilot do not show their law.
@@ -166,8 +154,6 @@ std::shared_ptr<const stats::ValueCells> planned_law(const PlannedChannel& plann
   }
   return law;
 }
-
-// ---- Exact methods
 
 // Barnard's maximum over the nuisance probability costs at most this (stats/means/binomial.h).
 constexpr double two_sample_cost = 1.4;
@@ -213,8 +199,6 @@ std::optional<std::uint64_t> exact_secondaries(const TestOutcome& test,
   return most;
 }
 
-// ---- The choice of a method
-
 /// True if every known value is one of the two ends of its range.
 bool are_two_valued(const TestOutcome& test, const std::vector<Known>& channels) {
   const Question& question = test.question;
@@ -241,33 +225,25 @@ bool can_afford_bets(TestOutcome betting, const Pilots& pilots) {
   return size.value_or(0) <= most_bets;
 }
 
-// ---- Data
-
-/// Bound at this level on a constant sample's shift by unseen values: q times the declared range to
-/// the worse side, plus rounding.
-double unseen_shift(const Seen& seen, std::size_t subject, double level) {
-  const stats::Moments& x = seen.moments(subject);
-  const Subject& side = seen.question.subjects[subject];
-  const stats::Range range = range_of(side, seen.channel, x);
-  const double unseen = -std::expm1(std::log(level) / static_cast<double>(x.count));
-  return unseen * std::max({0.0, x.mean - range.low, range.high - x.mean}) +
-         rounding_of(side, seen.channel);
-}
-
 /// Why two means cannot be compared if one is constant and its unseen values could decide; "" if
-/// they can.
+/// they can. The bound on its shift is q times the declared range to the worse side, plus rounding.
 std::string unseen_could_decide(const TestOutcome& outcome, const Seen& seen) {
   const Question& question = outcome.question;
   for (std::size_t subject = 0; subject < seen.data.size() && question.of_two(); ++subject) {
     if (!is_constant(seen, subject)) continue;
-    const double shift =
-        question.factor_of(subject) * unseen_shift(seen, subject, outcome.share().alpha);
+    const Moments& x = seen.moments(subject);
+    const Subject& side = question.subjects[subject];
+    const stats::Range range = range_of(side, seen.channel, x);
+    const double unseen =
+        -std::expm1(std::log(outcome.share().alpha) / static_cast<double>(x.count));
+    const double shift = question.factor_of(subject) *
+                         (unseen * std::max({0.0, x.mean - range.low, range.high - x.mean}) +
+                          rounding_of(side, seen.channel));
     const double error =
         question.factor_of(1 - subject) * seen.moments(1 - subject).standard_error();
     if (shift <= tolerated_shift * error) continue;
     return fmt::format(
-        "every observation of `{}` is {:.10g}, and {}", question.subjects[subject].estimator->name,
-        seen.moments(subject).mean,
+        "every observation of `{}` is {:.10g}, and {}", side.estimator->name, x.mean,
         std::isfinite(shift)
             ? fmt::format("unseen values could move its mean by {:.3g}, and the comparison's "
                           "standard error is {:.3g}; take more observations",

@@ -4,16 +4,12 @@
 
 #include "harness/families/families.h"
 #include "harness/plan/outcome.h"
-#include "harness/question/question.h"
 #include "harness/theta/ask.h"
-#include "harness/theta/theta.h"
 #include "stats/basics/scores.h"
 #include "stats/laws/quantile_test.h"
 
 namespace assay::harness {
 namespace {
-
-// ---- Evidence
 
 std::vector<double> sorted(std::span<const double> values, double factor) {
   std::vector<double> copy(values.begin(), values.end());
@@ -63,8 +59,6 @@ Evidence quantile(const Seen& seen) {
   return {
       .estimate = estimate, .at = at, .interval = interval, .quantity = "difference of quantiles"};
 }
-
-// ---- Sizes
 
 /// Deviation of one secondary, for planning.
 double quantile_deviation(const TestOutcome& test, std::size_t subject, std::size_t channel,

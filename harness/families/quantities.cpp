@@ -1,7 +1,6 @@
 #include <algorithm>
 
 #include "harness/families/families.h"
-#include "harness/question/question.h"
 
 namespace assay::harness {
 

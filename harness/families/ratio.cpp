@@ -13,15 +13,11 @@
 
 #include "harness/families/families.h"
 #include "harness/plan/outcome.h"
-#include "harness/question/question.h"
 #include "harness/run/evaluate.h"
 #include "harness/theta/ask.h"
-#include "harness/theta/decision.h"
-#include "harness/theta/methods.h"
 #include "stats/gates/assumption_gates.h"
 #include "stats/means/skewness_corrected_t.h"
 #include "stats/means/student_t.h"
-#include "stats/variances/influence.h"
 #include "stats/variances/normal_variances.h"
 
 namespace assay::harness {
@@ -41,8 +37,6 @@ struct RatioWords {
   const char* one;
   const char* many;
 };
-
-// ---- Plans
 
 /// The variance of one observation's influence values of a variance, over its square. It is 2 for a
 /// normal law. A mean's excess kurtosis falls like 1 / its size.
@@ -243,8 +237,6 @@ Method influence_row(bool (*answers)(const Question&), Keeps keeps) {
       of_scores};
 }
 
-// ---- Variances
-
 /// The variance of the first over that of the second, or over the number, where theta is 0.
 double null_of(const Seen& seen) {
   const Question& question = seen.question;
@@ -393,8 +385,6 @@ class VarianceTheta final : public LogTheta {
   bool tells(const ChannelData& data) const override { return data.moments.count >= 4; }
   double log_null(const Seen& seen) const override { return std::log(null_of(seen)); }
 };
-
-// ---- Costs, efficiencies and total variances
 
 /// The values with the cost that the test counts, rays or samples.
 const JointMoments& by_its_cost(const Question& question, std::span<const JointMoments> joint) {

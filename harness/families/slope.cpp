@@ -7,16 +7,12 @@
 
 #include "harness/families/families.h"
 #include "harness/plan/outcome.h"
-#include "harness/question/question.h"
 #include "harness/run/evaluate.h"
 #include "harness/suite/suite.h"
 #include "stats/gates/assumption_gates.h"
-#include "stats/variances/influence.h"
 
 namespace assay::harness {
 namespace {
-
-// ---- Evidence
 
 using stats::Moments;
 using stats::SlopeData;
@@ -132,8 +128,6 @@ Gate power_law_gate(const Seen& seen, double level) {
   return gate_of("p of a power law", std::exp(log_p), limit,
                  log_p <= std::log(limit) ? "red" : "green");
 }
-
-// ---- Sizes
 
 // Standard errors that the fitted constant must exceed: a fainter power law cannot be planned.
 constexpr double least_visibility = 3;
@@ -260,8 +254,6 @@ class SlopeTheta final : public Theta {
     return "sweep values where it is larger: 0 has no slope";
   }
 };
-
-// ---- Binding
 
 PreparedEstimator swept(const PreparedEstimator& estimator, const std::string& parameter,
                         const Value& value) {

@@ -4,11 +4,9 @@
 
 #include "harness/families/families.h"
 #include "harness/plan/outcome.h"
-#include "harness/question/question.h"
 #include "harness/run/evaluate.h"
 #include "harness/sampling/summary.h"
 #include "harness/theta/ask.h"
-#include "harness/theta/theta.h"
 
 namespace assay::harness {
 

@@ -132,8 +132,6 @@ std::string range_text(char axis, std::int64_t first, std::uint32_t count) {
   return fmt::format("{} {}-{}", axis, first, first + count - 1);
 }
 
-// ---- Laws
-
 std::string seen_text(const stats::ImageLawFinding& most, const std::string& side) {
   const auto text = [&](const char* what) {
     return fmt::format("the {} {} in {}", what, most.z > 0 ? "larger" : "smaller", side);
@@ -172,8 +170,6 @@ stats::ImageLawTest law_test_of(const Question& question, const ImageTest& test,
            },
        .for_each = until_interrupted});
 }
-
-// ---- The images of a claim
 
 using stats::Declarations;
 

@@ -123,8 +123,6 @@ inline bool has_rows(const Question& question) {
   return std::ranges::any_of(question.subjects, is_recorded);
 }
 
-// ---- Parts of a claim, bound to a suite's estimators
-
 /// The source's estimator. InputError, with a near name, if the suite has none.
 const PreparedEstimator& estimator_of(const Source& source, const Estimators& estimators);
 
