@@ -125,19 +125,6 @@ bool settle(Point& p, const Sampler& sampler) {
   throw std::runtime_error(fmt::format("sampler `{}` drew {}", named.name, words));
 }
 
-/// True for nearly all draws. The closer look asks the sampler questions that may cost more than
-/// the draw. |length - 1| <= |length^2 - 1|.
-bool is_plainly_sound(Domain domain, const SamplerDraw& draw) {
-  if (draw.lobe != 0 || !(draw.density >= 0)) return false;
-  const auto& [x, y, z] = draw.point;
-  if (has_directions(domain)) {
-    return (z >= 0 || domain == Domain::sphere) &&
-           std::abs(x * x + y * y + z * z - 1) <= least_length_slack;
-  }
-  const bool in_square = x >= 0 && x <= 1 && y >= 0 && y <= 1;
-  return domain != Domain::interval && in_square && (domain == Domain::square || x + y <= 1);
-}
-
 // More panels of both coordinates together would exceed the limits of the quadrature.
 constexpr std::size_t most_panels = std::size_t{1} << 15;
 
@@ -338,7 +325,6 @@ std::vector<Marginal> cell_coordinates(const Sampler& sampler) {
 
 SamplerDraw sound(const NamedSampler& named, SamplerDraw draw) {
   const Sampler& sampler = *named.sampler;
-  if (is_plainly_sound(sampler.domain(), draw)) return draw;
   const int lobes = sampler.lobes();
   if (draw.lobe < 0 || draw.lobe >= lobes) {
     refuse_draw(named, fmt::format("from lobe {}, and declares {}", draw.lobe, lobes));
