@@ -331,6 +331,4 @@ std::optional<std::pair<std::uint64_t, std::string>> first_inconsistent(const Po
   return std::nullopt;
 }
 
-std::string consistency_purpose(const std::string& sampler) { return sampler + " consistency"; }
-
 }  // namespace assay::harness

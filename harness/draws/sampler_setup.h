@@ -152,7 +152,4 @@ inline const std::string inconsistent_channel = "inconsistent";
 std::optional<std::pair<std::uint64_t, std::string>> first_inconsistent(const Pool& pool,
                                                                         std::uint64_t count);
 
-/// Keeps a sampler's consistency and its draws on different streams.
-std::string consistency_purpose(const std::string& sampler);
-
 }  // namespace assay::harness

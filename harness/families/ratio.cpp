@@ -16,8 +16,7 @@
 #include "harness/run/evaluate.h"
 #include "harness/theta/ask.h"
 #include "stats/gates/assumption_gates.h"
-#include "stats/means/skewness_corrected_t.h"
-#include "stats/means/student_t.h"
+#include "stats/means/theta_of_means.h"
 #include "stats/variances/normal_variances.h"
 
 namespace assay::harness {
@@ -422,21 +421,14 @@ Moments logarithms(const Seen& seen, std::size_t subject) {
 /// on both sides.
 Evidence evidence_of_replicates(const Seen& seen) {
   const Question& question = seen.question;
-  const bool two = question.of_two();
-  const Moments x = logarithms(seen, 0);
-  Moments y = two ? logarithms(seen, 1) : Moments{};
-  y.mean += std::log(two ? question.factor : seen.reference().value);
-  const auto at = [=](double theta) {
-    return two ? stats::welch_t(x, y, {.scale = 1, .offset = theta})
-               : stats::student_t(x, {.value = y.mean + theta});
-  };
-  const auto interval = [=](double confidence) {
-    return two ? stats::welch_t_interval(x, y, confidence)
-               : stats::student_t_interval(x, {.value = y.mean}, confidence);
-  };
-  return {.estimate = x.mean - y.mean,
-          .at = at,
-          .interval = interval,
+  const double null = question.of_two() ? question.factor : seen.reference().value;
+  stats::ThetaOfMeans theta{.test = stats::mean_by_t,
+                            .x = {.moments = logarithms(seen, 0), .range = {}},
+                            .contrast = {.offset = std::log(null)}};
+  if (question.of_two()) theta.y = stats::MeanSample{logarithms(seen, 1), {}};
+  return {.estimate = theta.estimate(),
+          .at = [=](double value) { return theta.at(value); },
+          .interval = [=](double confidence) { return theta.interval(confidence); },
           .quantity = quantity_of(question)};
 }
 

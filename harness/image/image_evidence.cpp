@@ -33,17 +33,13 @@ stats::ImageDistance in_units_of_margin(const stats::ImageDistance& distance,
   return distance;
 }
 
-stats::ImageDistance relative_to(const stats::ImageDistance& distance,
-                                 const stats::ImageStack& other) {
-  const std::vector<double> zeros(other.extent.elements());
-  return stats::relative_to(
-      distance,
-      stats::image_distance({other, stats::ImageReference{other.extent, zeros}}, on_all_threads));
-}
-
 stats::ImageDistance distance_of(const Question& question, const ImagePair& pair) {
   const stats::ImageDistance distance = stats::image_distance(pair.pair(), on_all_threads);
-  if (pair.subtracted) return relative_to(distance, *pair.subtracted);
+  if (pair.subtracted) {
+    // All `value`s of a pair are 0.
+    return stats::relative_to(
+        distance, stats::image_distance({*pair.subtracted, pair.reference()}, on_all_threads));
+  }
   const bool independent = std::ranges::all_of(
       question.subjects, [](const Subject& side) { return side.image->independent; });
   return stats::with_reference_error(

@@ -176,7 +176,7 @@ Subject draws(const Source& source, const Estimators& estimators, Draws what) {
                   .averages = false};
   if (what == Draws::consistency) {
     subject.setup = std::make_shared<const ConsistencySetup>(*named, source.where);
-    subject.purpose = consistency_purpose(named->name);
+    subject.purpose = named->name + " consistency";  // has a stream of its own
   }
   if (rest == cell_channel) no_such_part(source, estimator);
   if (what == Draws::cells && rest.empty()) rest = cell_channel;
