@@ -259,7 +259,6 @@ class ImageTheta : public Theta {
     const auto elements = static_cast<double>(second.channels.size());
     return std::abs(question.factor) * std::sqrt(std::max(0.0, sum) / elements);
   }
-  std::uint64_t usual_size() const override { return classical_replicates; }
   std::string too_few(const TestOutcome& test) const override {
     const Question& question = test.question;
     std::uint64_t fewest = test.plan.most_secondaries();
@@ -277,8 +276,6 @@ class ImageTheta : public Theta {
     return evidence_of_images(seen, image_test(test));
   }
 
-  /// Other cells see the same difference in a few pixels, or of both signs, from other sizes on.
-  const char* detectable_text() const override { return " all over the image"; }
   std::string caveat(const DrawnTest& test) const override {
     const Question& question = test.outcome.question;
     const ScaledQuantity* const other = other_side(question.test->claim);

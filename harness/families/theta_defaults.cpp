@@ -79,8 +79,6 @@ std::optional<std::uint64_t> Theta::secondaries(const TestOutcome& test, const E
   return most;
 }
 
-std::uint64_t Theta::usual_size() const { return usual_secondaries; }
-
 std::string Theta::why_impossible(const Question& question) const {
   const bool uncertain = std::ranges::any_of(
       question.references, [](const Constant& each) { return each.standard_error > 0; });

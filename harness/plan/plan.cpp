@@ -281,7 +281,8 @@ stats::LookSchedule plan_looks(const TestOutcome& test, const Pilots& pilots,
   }
   if (has_rows(question)) return one_look(most, whole);
   const std::optional<std::uint64_t> alone = question.theta->secondaries(test, whole, pilots);
-  const std::uint64_t classical = question.theta->usual_size();
+  const std::uint64_t classical =
+      test.plan.method.keeps == Keeps::images ? classical_replicates : usual_secondaries;
   if (!alone) return one_look(std::min(std::max(first, classical), most), whole);
   if (most == std::numeric_limits<std::uint64_t>::max()) require_possible(test, *alone);
   const stats::LookLaw law = test.plan.method.is.over_looks;

@@ -104,7 +104,8 @@ std::string passed_alarm(const TestOutcome& outcome, const ChannelOutcome& chann
       return fmt::format("{}; but {}", text, excludes_no(all, outcome).text);
     }
     if (channel.detectable) {
-      const char* how = outcome.question.theta->detectable_text();
+      // Other cells see the same difference in a few pixels, or of both signs, from other sizes on.
+      const char* how = channel.image ? " all over the image" : " or more";
       return fmt::format("{}; an error of {}{} would have been found with probability {:g}{}", text,
                          reports::margin_text(*channel.detectable, channel.effect), how,
                          1 - outcome.place.share.beta, found_in_cell(outcome, channel));

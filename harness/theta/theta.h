@@ -138,8 +138,6 @@ class Theta {
                                                       const ErrorShare&, const Pilots&) const {
     return std::nullopt;
   }
-  /// Secondaries of a claim without a margin.
-  virtual std::uint64_t usual_size() const;
   virtual std::string why_impossible(const Question&) const;
   virtual std::string too_few(const TestOutcome&) const { return ""; }
 
@@ -186,8 +184,6 @@ class Theta {
   virtual const char* how_to_exclude() const {
     return "take more of them, or say with `detect` how large an error must not pass";
   }
-  /// How far a detectable theta reaches.
-  virtual const char* detectable_text() const { return " or more"; }
   /// A clause that fails need, and passes whose interval excludes the claim: another reason for
   /// what the data say, or the draw that shows it.
   virtual std::string caveat(const DrawnTest&) const { return ""; }
