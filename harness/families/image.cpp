@@ -17,42 +17,11 @@ namespace {
 
 const Location& place_of(const Question& question) { return question.test->claim.left.where; }
 
-void require_tested_relation(const Question& question) {
-  const Relation relation = question.test->claim.relation;
-  if (is_two_sided(relation)) return;
-  refuse(place_of(question),
-         "images are claimed to be equal (`==`) or `within` a margin of each other; for `{}` name "
-         "one pixel, as in `{}.{}`",
-         to_string(relation), question.subjects[0].estimator->name,
-         element_name(*question.subjects[0].image, 0));
-}
-
-/// A number's error is common to all pixels, but the methods need independent ones.
-void require_exact_number(const Question& question) {
-  const auto* number = std::get_if<Constant>(&question.test->claim.right);
-  if ((number != nullptr && number->standard_error > 0) ||
-      (question.test->reference_number && question.test->reference_number->standard_error > 0)) {
-    refuse(place_of(question),
-           "the error of one number is common to all pixels: no method takes `+-` for images");
-  }
-}
-
 /// True if the image is compared with numbers that are all zero.
 bool is_against_darkness(const Question& question) {
   return !question.of_two() &&
          std::ranges::all_of(question.references,
                              [](const Constant& reference) { return reference.value == 0; });
-}
-
-/// A number is held against all pixels, those too that are left out.
-void require_all_pixels(const Question& question) {
-  const Subject& first = question.subjects[0];
-  const bool number = std::holds_alternative<Constant>(question.test->claim.right);
-  if (!number || is_against_darkness(question) || !first.image->left_out) return;
-  refuse(place_of(question),
-         "`{}` leaves out pixels, but a number is claimed of all pixels: use a `crop` instead of "
-         "the `mask`",
-         first.estimator->name);
 }
 
 /// Only images of as many primaries have one law, or share their random numbers.
@@ -190,13 +159,29 @@ class ImageTheta : public Theta {
 
   const Theta* of_images() const override { return this; }
   const Theta* of_pairs() const override;
-  /// InputError for inequalities, images of unequal sizes, an image against something else, and a
-  /// number with an error.
   void check(const Question& question) const override {
     require_one_size(question);
-    require_tested_relation(question);
-    require_exact_number(question);
-    require_all_pixels(question);
+    const TestEntry& test = *question.test;
+    const Subject& first = question.subjects[0];
+    if (!is_two_sided(test.claim.relation)) {
+      refuse(place_of(question),
+             "images are claimed to be equal (`==`) or `within` a margin of each other; for `{}` "
+             "name one pixel, as in `{}.{}`",
+             to_string(test.claim.relation), first.estimator->name, element_name(*first.image, 0));
+    }
+    // A number's error is common to all pixels, but the methods need independent ones.
+    const auto* number = std::get_if<Constant>(&test.claim.right);
+    if ((number != nullptr && number->standard_error > 0) ||
+        (test.reference_number && test.reference_number->standard_error > 0)) {
+      refuse(place_of(question),
+             "the error of one number is common to all pixels: no method takes `+-` for images");
+    }
+    if (number != nullptr && !is_against_darkness(question) && first.image->left_out) {
+      refuse(place_of(question),
+             "`{}` leaves out pixels, but a number is claimed of all pixels: use a `crop` instead "
+             "of the `mask`",
+             first.estimator->name);
+    }
   }
   void check_margin(const Question& question, const Margin& margin) const override {
     if (!is_against_darkness(question)) return;

@@ -352,20 +352,6 @@ std::vector<stats::PlanePoint> pilot_points(const TestOutcome& test, const Pilot
   return points;
 }
 
-/// Chooses the plan's cells by the pilots' points; sets `invalid` if there are none. Rows of a
-/// file are their own pilot, both sides together; beside drawn values they are not used.
-void choose_cells(TestOutcome& test, const Pilots& pilots) {
-  if (test.plan.method.keeps != Keeps::points) return;
-  std::vector<stats::PlanePoint> points = pilot_points(test, pilots);
-  if (points.empty()) {
-    test.plan.invalid = Reason("the pilots gave no point to choose cells by");
-    return;
-  }
-  const bool plane = test.question.subjects[0].channels.size() > 1;
-  test.plan.cells = std::make_shared<const stats::SampledCells>(
-      stats::sampled_cells(std::move(points), plane ? plane_cells : line_cells));
-}
-
 constexpr MethodTraits of_distinct_values{.of_distinct_values = true};
 
 /// Theta is a distance between two laws: of their distribution functions, or Cohen's effect size
@@ -402,8 +388,18 @@ class LawTheta : public Theta {
     require_absolute(margin, "a distance between laws is a probability, and 1 per cent is 0.01");
   }
 
+  /// The pilots' points choose the cells. Rows of a file are their own pilot, both sides together;
+  /// beside drawn values they are not used.
   std::uint64_t choose(TestOutcome& test, const Pilots& pilots) const override {
-    choose_cells(test, pilots);
+    if (test.plan.method.keeps != Keeps::points) return least_secondaries;
+    std::vector<stats::PlanePoint> points = pilot_points(test, pilots);
+    if (points.empty()) {
+      test.plan.invalid = Reason("the pilots gave no point to choose cells by");
+      return least_secondaries;
+    }
+    const bool plane = test.question.subjects[0].channels.size() > 1;
+    test.plan.cells = std::make_shared<const stats::SampledCells>(
+        stats::sampled_cells(std::move(points), plane ? plane_cells : line_cells));
     return least_secondaries;
   }
 

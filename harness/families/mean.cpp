@@ -80,15 +80,6 @@ std::string lost_to_rounding(const Seen& seen) {
       seen.question.subjects[worst].estimator->name, seen.moments(worst).mean, rounding, error);
 }
 
-std::vector<Constant> recorded_means(const Question& question, const Subject& reference) {
-  require_one_size(question);
-  if (reference.image) require_equal_pixels(question, reference);
-  return mapped(reference.declared(), [&](const Channel& channel) {
-    return Constant{question.factor * channel.mean.value_or(0),
-                    std::abs(question.factor) * channel.mean_error};
-  });
-}
-
 // So few values beyond half the way to an end may be none in the test.
 constexpr std::ptrdiff_t few_values = 32;
 
@@ -637,7 +628,13 @@ std::string channel_suffix(const Question& question, std::size_t channel) {
 Question MeanTheta::bind(const TestEntry& test, const Estimators& estimators) const {
   Question question = Theta::bind(test, estimators);
   if (question.of_two() && question.subjects[1].setup->is_reference()) {
-    question.references = recorded_means(question, question.subjects[1]);
+    const Subject& reference = question.subjects[1];
+    require_one_size(question);
+    if (reference.image) require_equal_pixels(question, reference);
+    question.references = mapped(reference.declared(), [&](const Channel& channel) {
+      return Constant{question.factor * channel.mean.value_or(0),
+                      std::abs(question.factor) * channel.mean_error};
+    });
     question.subjects.pop_back();
     question.factor = 1;
   }
