@@ -470,11 +470,6 @@ class CostTheta final : public RatioTheta {
       : RatioTheta({.joins_channels = true, .logarithm = true}, {"cost", "costs"},
                    rows("t of replicates: costs in seconds")) {}
 
-  Question bind(const TestEntry& test, const Estimators& estimators) const override {
-    Question question = Theta::bind(test, estimators);
-    require_drawn(question);
-    return question;
-  }
   const Theta* of_images() const override { return this; }
   std::string channel_name(const Question&, std::size_t) const override { return "cost"; }
 
@@ -602,7 +597,6 @@ Constant truth_of(const Seen& seen, std::size_t subject) {
 
 Question EfficiencyTheta::bind(const TestEntry& test, const Estimators& estimators) const {
   Question question = Theta::bind(test, estimators);
-  require_drawn(question);
   const bool asked = test.reference || test.reference_number;
   const std::vector<Source> sources = sources_of(test.claim);
   question.truths.resize(question.subjects.size());

@@ -282,18 +282,6 @@ void add_reference(Question& question, const Estimators& estimators) {
   question.has_reference_subject = true;
 }
 
-void require_drawn(const Question& question) {
-  if (question.test->cost != CostKind::seconds) return;
-  for (const Subject& subject : question.subjects) {
-    if (!is_recorded(subject) && !subject.setup->keeps_files()) continue;
-    refuse(question.test->place_of("cost"),
-           "`{}` is read, maybe from an earlier run: its seconds mean nothing; draw it by "
-           "`process`, or write the "
-           "seconds as a number of the observation",
-           subject.estimator->name);
-  }
-}
-
 void require_absolute(const Margin& margin, const char* reason) {
   if (!margin.relative) return;
   refuse(margin.where, "a margin in per cent has no meaning here: {}; give an absolute number",

@@ -165,10 +165,6 @@ std::vector<Constant> truths_of(const TestEntry& test, const Subject& subject,
 /// Adds the drawn `reference` of the test, if it has one.
 void add_reference(Question& question, const Estimators& estimators);
 
-/// InputError for a claim in seconds on data that are read: seconds are measured over blocks of
-/// drawing.
-void require_drawn(const Question& question);
-
 void require_absolute(const Margin& margin, const char* reason);
 
 /// The largest relative error of a number that is drawn: an image's are in single precision.

@@ -128,6 +128,19 @@ void require_observations(const Question& question) {
   }
 }
 
+/// Seconds are measured over blocks of drawing.
+void require_drawn(const Question& question) {
+  if (question.test->cost != CostKind::seconds) return;
+  for (const Subject& subject : question.subjects) {
+    if (!is_recorded(subject) && !subject.setup->keeps_files()) continue;
+    refuse(question.test->place_of("cost"),
+           "`{}` is read, maybe from an earlier run: its seconds mean nothing; draw it by "
+           "`process`, or write the "
+           "seconds as a number of the observation",
+           subject.estimator->name);
+  }
+}
+
 void ask_of_images(Question& question) {
   if (const Theta* const theta = question.theta->of_images()) {
     question.theta = theta;
@@ -162,6 +175,7 @@ Question ask(const TestEntry& test, const Estimators& estimators, std::uint64_t 
   const Quantity& left = test.claim.left;
   Question question = (left.slope ? left.row->slope : left.row->theta)->bind(test, estimators);
   require_observations(question);
+  require_drawn(question);
   for (const Subject& other : question.subjects) {
     if (question.subjects[0].image && other.image) require_equal_pixels(question, other);
   }

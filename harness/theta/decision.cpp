@@ -10,8 +10,6 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-constexpr double log_of_impossible = std::numeric_limits<double>::lowest();
-
 }  // namespace
 
 Evidence from_probability(const stats::Successes& seen, double offset, double error) {
@@ -64,7 +62,7 @@ double log_p_claimed(const Evidence& evidence, const Regions& regions) {
   // p of "theta < 0" or "theta > 0" is that of the closed region, unless theta is exactly 0.
   const bool is_exactly_0 = regions.proof() && evidence.exact && evidence.at(0).log_p_upper == 0 &&
                             evidence.at(0).log_p_lower == 0;
-  return is_exactly_0 ? log_of_impossible : std::min(above, below);
+  return is_exactly_0 ? std::numeric_limits<double>::lowest() : std::min(above, below);
 }
 
 double log_p_forbidden(const Evidence& evidence, const Regions& regions) {
