@@ -103,24 +103,20 @@ ImageViews pilot_views(const Subject& side, const Pilots& pilots) {
   return {pilot_of(side, pilots)->images, side.channels};
 }
 
-/// The noise of differences, and the brightness of what is subtracted.
-stats::ImageNoise noise_of_differences(const Question& question, const Pilots& pilots) {
-  const std::vector<ChannelData> data = mapped(question.subjects, [&](const Subject& side) {
-    return ChannelData{.images = pilot_views(side, pilots)};
-  });
-  const ImagePair pair({question, 0, data});
-  stats::ImageNoise noise = stats::noise_of_pilot(pair.first, on_all_threads);
-  noise.squared_norm = stats::image_squared_mean(*pair.subtracted);
-  return noise;
-}
-
-/// The noise of an observation, and the brightness that margins are relative to.
+/// The noise of an observation, and the brightness that margins are relative to: of pairs that of
+/// what is subtracted.
 stats::ImageNoise planned_noise(const TestOutcome& test, const Pilots& pilots) {
   const Question& question = test.question;
   const std::vector<std::uint64_t>& primaries = test.plan.primaries;
   stats::ImageNoise all;
   if (question.is().of_pairs) {
-    all.add(noise_of_differences(question, pilots), 1, question.subjects[0].averaged(primaries[0]));
+    const std::vector<ChannelData> data = mapped(question.subjects, [&](const Subject& side) {
+      return ChannelData{.images = pilot_views(side, pilots)};
+    });
+    const ImagePair pair({question, 0, data});
+    stats::ImageNoise noise = stats::noise_of_pilot(pair.first, on_all_threads);
+    noise.squared_norm = stats::image_squared_mean(*pair.subtracted);
+    all.add(noise, 1, question.subjects[0].averaged(primaries[0]));
     return all;
   }
   for (std::size_t s = 0; s < question.subjects.size(); ++s) {

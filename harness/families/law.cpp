@@ -453,7 +453,6 @@ class LawTheta : public Theta {
   }
 };
 
-/// A sampler's draws against its declared density.
 class DensityTheta final : public LawTheta {
  public:
   DensityTheta() : LawTheta({.of_single_values = true, .of_a_law = true}) {}

@@ -245,7 +245,6 @@ std::string unseen_could_decide(const TestOutcome& outcome, const Seen& seen) {
   return "";
 }
 
-/// Hint at the commonest cause of constant observations.
 std::string seeds(const Question& question) {
   for (const Subject& subject : question.subjects) {
     if (is_recorded(subject)) return "if they should vary, does each have its own seed? ";
@@ -256,7 +255,6 @@ std::string seeds(const Question& question) {
   return "";
 }
 
-/// Says how to declare the range that bounds what was never seen.
 std::string range_advice(const Question& question) {
   return std::string(has_rows(question) ? "let a program draw the values instead of a file, and "
                                         : "") +

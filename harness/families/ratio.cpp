@@ -31,10 +31,9 @@ RatioSide without_truth(const Influence& influence) {
   return {.influence = [influence](double) { return influence; }};
 }
 
-/// The words for a quantity: "cost" and "costs".
 struct RatioWords {
-  const char* one;
-  const char* many;
+  const char* one;   // "cost"
+  const char* many;  // "costs"
 };
 
 /// The variance of one observation's influence values of a variance, over its square. It is 2 for a
@@ -225,7 +224,6 @@ Evidence by_influence(const Seen& seen) {
       .exact = error == 0};
 }
 
-/// The row of the one method of influence values, for a family that keeps them so.
 Method influence_row(bool (*answers)(const Question&), Keeps keeps) {
   return {
       "influence-t",
@@ -385,7 +383,6 @@ class VarianceTheta final : public LogTheta {
   double log_null(const Seen& seen) const override { return std::log(null_of(seen)); }
 };
 
-/// The values with the cost that the test counts, rays or samples.
 const JointMoments& by_its_cost(const Question& question, std::span<const JointMoments> joint) {
   return joint[question.test->cost == CostKind::samples ? samples_cost : rays_cost];
 }
