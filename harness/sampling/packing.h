@@ -39,74 +39,28 @@ static_assert(sizeof(Cost) == 4 * 8 && sizeof(stats::Moments) == 9 * 8 &&
               sizeof(stats::JointMoments) == (2 + 2 * 4 + 25) * 8 &&
               sizeof(ChannelSummary) == (9 + 2) * 8 && sizeof(ChannelPlan) == 5 * 8);
 
-/// Appends values to bytes. A type of its own has a function parts(archive, value), which calls the
-/// archive with its members; Unpacker takes the same function.
-class Packer {
+/// Values as bytes, one after another: appended to them (`packs`), or taken off them. A type of its
+/// own has a function parts(archive, value), which calls the archive with its members. Taking off
+/// throws Unpackable, and allocates no more than the bytes can fill.
+template <bool packs>
+class BinaryArchive {
  public:
+  BinaryArchive() = default;
+  explicit BinaryArchive(std::string_view bytes) : bytes_(bytes) {}
+
   template <class... T>
-  void operator()(const T&... values) {
-    (put(values), ...);
+  void operator()(T&&... values) {
+    (pass(values), ...);
   }
   /// A list whose length the reader knows.
   template <class List>
-  void fixed(const List& list) {
-    put(static_cast<std::uint64_t>(list.size()));
-    if constexpr (Plain<typename List::value_type>) {
-      bytes_.append(reinterpret_cast<const char*>(list.data()), list.size() * sizeof list[0]);
-    } else {
-      for (const auto& each : list) put(each);
-    }
+  void fixed(List& list) {
+    require(length(list.size(), 0) == list.size(), "a list has another length than its plan says");
+    pass_each(list);
   }
   std::string bytes() && { return std::move(bytes_); }
-
- private:
-  template <Plain T>
-  void put(const T& number) {
-    bytes_.append(reinterpret_cast<const char*>(&number), sizeof number);
-  }
-  void put(std::string_view text) {
-    put(static_cast<std::uint64_t>(text.size()));
-    bytes_ += text;
-  }
-  void put(const std::string& text) { put(std::string_view(text)); }
-  template <class T>
-  void put(const std::vector<T>& list) {
-    fixed(list);
-  }
-  template <class T>
-  void put(const std::optional<T>& value) {
-    put(value.has_value());
-    if (value) put(*value);
-  }
-  template <class A, class B>
-  void put(const std::pair<A, B>& pair) {
-    put(pair.first);
-    put(pair.second);
-  }
-  template <class T>
-  void put(const T& value) {
-    parts(*this, value);
-  }
-
-  std::string bytes_;
-};
-
-/// Reads what a Packer wrote. Throws Unpackable; allocates no more than the bytes can fill.
-class Unpacker {
- public:
-  explicit Unpacker(std::string_view bytes) : rest_(bytes) {}
-
-  template <class... T>
-  void operator()(T&... values) {
-    (get(values), ...);
-  }
-  template <class List>
-  void fixed(List& list) {
-    require(length(0) == list.size(), "a list has another length than its plan says");
-    get_each(list);
-  }
-  /// Call it after the last value.
-  void end() const { require(rest_.empty(), "there is more in it than expected"); }
+  /// Call it after the last value that is taken off.
+  void end() const { require(bytes_.empty(), "there is more in it than expected"); }
 
   static void require(bool holds, const char* why) {
     if (!holds) throw Unpackable(why);
@@ -114,63 +68,76 @@ class Unpacker {
 
  private:
   std::string_view taken(std::uint64_t count) {
-    require(count <= rest_.size(), "it is cut short");
-    const std::string_view taken = rest_.substr(0, count);
-    rest_.remove_prefix(count);
+    require(count <= bytes_.size(), "it is cut short");
+    const std::string_view taken = bytes_.substr(0, count);
+    bytes_.remove_prefix(count);
     return taken;
   }
-  /// A length of elements that take at least so many bytes each.
-  std::uint64_t length(std::uint64_t least) {
-    std::uint64_t count = 0;
-    get(count);
-    require(least == 0 || count <= rest_.size() / least, "a list is longer than the data");
+  template <class T>
+  void pass_bits(T* first, std::size_t size) {
+    if constexpr (packs) {
+      bytes_.append(reinterpret_cast<const char*>(first), size);
+    } else if (const std::string_view bits = taken(size); !bits.empty()) {
+      std::memcpy(first, bits.data(), size);
+    }
+  }
+  /// The length of a list whose elements take at least so many bytes each.
+  std::uint64_t length(std::uint64_t count, std::uint64_t least) {
+    pass(count);
+    const bool fits = packs || least == 0 || count <= bytes_.size() / least;
+    require(fits, "a list is longer than the data");
     return count;
   }
   template <class List>
-  void get_each(List& list) {
+  void pass_each(List& list) {
     if constexpr (Plain<typename List::value_type>) {
-      const std::string_view bytes = taken(list.size() * sizeof list[0]);
-      if (!bytes.empty()) std::memcpy(list.data(), bytes.data(), bytes.size());
+      pass_bits(list.data(), list.size() * sizeof list[0]);
     } else {
-      for (auto& each : list) get(each);
+      for (auto& each : list) pass(each);
     }
   }
-  template <Plain T>
-  void get(T& number) {
-    std::memcpy(&number, taken(sizeof number).data(), sizeof number);
-  }
-  void get(bool& value) {
-    std::uint8_t byte = 0;
-    get(byte);
-    require(byte <= 1, "a yes or no is neither");
-    value = byte == 1;
-  }
-  void get(std::string_view& text) { text = taken(length(1)); }  ///< of the reader's bytes
-  void get(std::string& text) { text = taken(length(1)); }
   template <class T>
-  void get(std::vector<T>& list) {
-    list.resize(length(Plain<T> ? sizeof(T) : sizeof(std::uint64_t)));
-    get_each(list);
-  }
-  template <class T>
-  void get(std::optional<T>& value) {
-    bool there = false;
-    get(there);
-    value.reset();
-    if (there) get(value.emplace());
-  }
-  template <class A, class B>
-  void get(std::pair<A, B>& pair) {
-    get(pair.first);
-    get(pair.second);
-  }
-  template <class T>
-  void get(T& value) {
-    parts(*this, value);
+  void pass(T& value) {
+    if constexpr (!packs && std::same_as<T, bool>) {
+      std::uint8_t byte = 0;
+      pass(byte);
+      require(byte <= 1, "a yes or no is neither");
+      value = byte == 1;
+    } else if constexpr (Plain<T>) {
+      pass_bits(&value, sizeof value);
+    } else if constexpr (packs && std::convertible_to<T&, std::string_view>) {
+      const std::string_view text = value;
+      length(text.size(), 1);
+      bytes_ += text;
+    } else if constexpr (std::convertible_to<T&, std::string_view>) {
+      value = taken(length(0, 1));
+    } else if constexpr (requires { value.has_value(); }) {
+      bool there = value.has_value();
+      pass(there);
+      if constexpr (!packs) {
+        value.reset();
+        if (there) value.emplace();
+      }
+      if (there) pass(*value);
+    } else if constexpr (requires { typename T::value_type; }) {
+      using Each = typename T::value_type;
+      const auto size = length(value.size(), Plain<Each> ? sizeof(Each) : sizeof(std::uint64_t));
+      if constexpr (!packs) value.resize(size);
+      pass_each(value);
+    } else if constexpr (requires {
+                           value.first;
+                           value.second;
+                         }) {
+      (*this)(value.first, value.second);
+    } else {
+      parts(*this, value);
+    }
   }
 
-  std::string_view rest_;
+  std::conditional_t<packs, std::string, std::string_view> bytes_;
 };
+using Packer = BinaryArchive<true>;
+using Unpacker = BinaryArchive<false>;
 
 /// The beginning of a frame.
 inline constexpr std::string_view magic = "assay ";
