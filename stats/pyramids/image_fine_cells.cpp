@@ -216,6 +216,7 @@ class FineTiles {
       count_varied(tile, h);
       if (!coarse_.half[h].squared_error.blocks.empty()) add_reference_error(tile, h);
     }
+    add_rare_elements(tile);
     offer_elements(tile);
     for (std::size_t k = 0; k < fine_squares.size(); ++k) offer_squares(tile, k);
     found_.tiles[tile.y / Tile::rows * tiles_across(extent_) + tile.x / Tile::columns] =
@@ -229,16 +230,23 @@ class FineTiles {
   };
   static constexpr double large = 2;  // In units of the light of the block.
 
+  struct RareOfElement {
+    double largest = 0;
+    double number = 0;
+  };
+
   // Elements that begin in a tile, rows as far apart as the tile's.
   struct Elements {
     void start(std::size_t size) {
       third.assign(size, 0.0);
       light.assign(size, 0.0);
+      for (std::vector<RareOfElement>& side : rare) side.assign(size, {});
     }
     void start_part(std::size_t size) {
       for (std::vector<double>* each : {&squares, &cubes, &limit}) each->assign(size, 0.0);
     }
     std::vector<double> light;
+    std::array<std::vector<RareOfElement>, sides_of_pair> rare;
     // These are of the current part.
     std::vector<double> squares;
     std::vector<double> cubes;
@@ -339,8 +347,23 @@ class FineTiles {
       if (!images.empty()) shares += 1 / static_cast<double>(images.size());
     }
     const double variance = own.variance_at(tile.first(y) + i - own.first);
+    const bool is_rare = shares * deviation * deviation > 4 * variance;
     found_.noise.at(part.side, tile.x + i / extent_.channels, tile.y + y, i % extent_.channels)
-        .add_large(deviation, shares * deviation * deviation > 4 * variance);
+        .add_large(deviation, is_rare);
+    if (!is_rare) return;
+    RareOfElement& rare = elements_.rare[part.side][y * tile.stride() + i];
+    rare.number += 1;
+    rare.largest = std::max(rare.largest, std::abs(deviation));
+  }
+
+  void add_rare_elements(const Tile& tile) {
+    for (std::size_t s = 0; s < sides_of_pair; ++s) {
+      for_each_element(
+          tile, [&](std::size_t i, std::size_t, std::size_t x, std::size_t y, std::size_t c) {
+            const auto [largest, number] = elements_.rare[s][i];
+            if (number > 0) found_.noise.at(s, x, y, c).add_rare_element(largest, number);
+          });
+    }
   }
 
   // Powers of the deviations of an element that the other half gives no weight.

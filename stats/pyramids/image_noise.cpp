@@ -66,6 +66,12 @@ void PooledNoise::add_large(double deviation, bool rare) {
   add(stats::powers_of(deviation, -1));
 }
 
+void PooledNoise::add_rare_element(double largest, double number) {
+  const int below = top_ - std::ilogb(largest) - 1;
+  if (below < octaves)
+    tails_[0][static_cast<std::size_t>(below)].rare_squares += static_cast<float>(number * number);
+}
+
 void PooledNoise::merge(const PooledNoise& other) {
   add(other.common_);
   elements_ += other.elements_;
@@ -119,11 +125,13 @@ int PooledNoise::bottom() const {
   return top_ - depth;
 }
 
-double PooledNoise::rare(int octave) const {
+PooledNoise::Rare PooledNoise::rare(int octave) const {
   const int i = top_ - octave;
-  if (i < 0 || i >= octaves) return 0;
+  if (i < 0 || i >= octaves) return {};
   const auto below = static_cast<std::size_t>(i);
-  return static_cast<double>(tails_[0][below].rare.count + tails_[1][below].rare.count);
+  const Bin& up = tails_[0][below];
+  const Bin& down = tails_[1][below];
+  return {.count = up.rare.count + down.rare.count, .squares = up.rare_squares + down.rare_squares};
 }
 
 double PooledNoise::hidden_squares(double replicates) const {
@@ -198,18 +206,26 @@ bool NoisePyramid::of_one_law(const Around& near, double toward) const {
   constexpr double errors_of_signs = 6;
   constexpr double errors_of_rates = 2.25;
   if (replicates_[1] == 0) return false;
-  // The root of a count plus 3/8 has the standard error 1/2 (Anscombe 1948).
+  // The root of a count plus 3/8 has the standard error 1/2 (Anscombe 1948), of counts in clusters
+  // the root of their mean size times that.
   const auto root = [](double count) { return std::sqrt(count + 0.375); };
   return std::ranges::all_of(near.blocks, [&](const Sides& here) {
     const double more = root(here[0]->noisier()) - root(here[1]->noisier());
     if (std::abs(more) > errors_of_signs * std::numbers::sqrt2 / 2) return false;
-    std::array<double, sides_of_pair> beyond = {};
-    for (int octave = near.last; octave >= near.first; --octave) {
-      for (std::size_t s = 0; s < sides_of_pair; ++s) beyond[s] += here[s]->rare(octave);
-      const double rate = root(beyond[0]) * std::sqrt(inverse(0));
-      const double other = root(beyond[1]) * std::sqrt(inverse(1));
-      const double error = std::sqrt(inverse(0) + inverse(1)) / 2;
-      const double errors = toward * (rate - other) / error;
+    std::array<PooledNoise::Rare, sides_of_pair> beyond = {};
+    const int first = std::max({near.first, here[0]->lowest(), here[1]->lowest()});
+    for (int octave = near.last; octave >= first; --octave) {
+      std::array<double, sides_of_pair> rates = {};
+      double variance = 0;
+      for (std::size_t s = 0; s < sides_of_pair; ++s) {
+        const PooledNoise::Rare more_rare = here[s]->rare(octave);
+        auto& [count, squares] = beyond[s];
+        count += more_rare.count;
+        squares += more_rare.squares;
+        rates[s] = root(count) * std::sqrt(inverse(s));
+        variance += (count > 0 ? squares / count : 1) * inverse(s) / 4;
+      }
+      const double errors = toward * (rates[0] - rates[1]) / std::sqrt(variance);
       if (errors > errors_of_rates || errors < -errors_of_signs) return false;
     }
     return true;
@@ -250,7 +266,7 @@ std::optional<double> NoisePyramid::growth_toward(const Around& near, double tow
   for (const auto& [a, b] : near.blocks) {
     double beyond = 0;
     for (int octave = near.last; octave >= near.first; --octave) {
-      beyond += (lacking(toward) == 0 ? a : b)->rare(octave);
+      beyond += (lacking(toward) == 0 ? a : b)->rare(octave).count;
       largest = std::max(largest, growth({a->cut_off(octave), b->cut_off(octave)}, toward));
       if (beyond < fewest) continue;
       largest =

@@ -34,6 +34,8 @@ class PooledNoise {
   // Takes a deviation, not 0, that is among those that are added. It is large beside what the other
   // elements mostly have.
   void add_large(double deviation, bool rare);
+  // Takes an element with so many rare deviations that were added, and the size of the largest.
+  void add_rare_element(double largest, double number);
   // Takes an element that varies; `noisier` if it has more relative variance than the other side's.
   void add_element(bool noisier);
   void merge(const PooledNoise& other);
@@ -49,9 +51,17 @@ class PooledNoise {
   static constexpr int no_octave = -100'000;  // top() without any.
   int top() const { return top_; }            // No large deviation is beyond +-2^top.
   int bottom() const;                         // The lowest octave of a large one.
+  // The lowest octave that is counted; large ones below are common.
+  int lowest() const { return top_ == no_octave ? no_octave : top_ - octaves + 1; }
   double noisier() const { return noisier_; }
-  // Number of rare deviations in this octave.
-  double rare(int octave) const;
+  // Number of rare deviations in this octave, and the squared numbers of those of the elements
+  // whose largest is in it. One element with many tells as little of others as one with one.
+  struct Rare {
+    double count = 0;
+    double squares = 0;
+    friend bool operator==(const Rare&, const Rare&) = default;
+  };
+  Rare rare(int octave) const;
 
   // The square, summed over the elements, of the mean that each lacks if it missed the values that
   // carry the skewness in so many replicates. Those are taken to be of one size, as in a law of two
@@ -72,9 +82,11 @@ class PooledNoise {
   struct Bin {
     Pile large;
     Pile rare;
+    float rare_squares = 0;
     void add(const Bin& other) {
       large.add(other.large);
       rare.add(other.rare);
+      rare_squares += other.rare_squares;
     }
   };
   using Tail = std::array<Bin, octaves>;

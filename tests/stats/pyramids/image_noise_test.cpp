@@ -19,7 +19,9 @@ PooledNoise pooled(const std::vector<double>& values, double unit = 1, bool rare
     const double x = unit * value;
     powers.squares += x * x;
     powers.cubes += x * x * x;
-    if (std::abs(value) > least_rare) noise.add_large(x, rare);
+    if (!(std::abs(value) > least_rare)) continue;
+    noise.add_large(x, rare);
+    if (rare) noise.add_rare_element(std::abs(x), 1);
   }
   noise.add(powers);
   return noise;
@@ -110,6 +112,16 @@ TEST(NoisePyramid, HasTheVarianceOfEqualMeans) {
   // The brighter has far more, but smaller ones. Dark values of it are no skewness of the darker.
   EXPECT_NEAR(t(pyramid_of({with_rare(4), with_rare(100, 4)})), t_of(50 - 0.64), 1e-9);
   EXPECT_NEAR(t(pyramid_of({with_rare(18), with_rare(1, -50)})), t_of(50), 1e-9);
+  // As many in one element tell as little of others as one.
+  PooledNoise many;
+  many.add({.count = 18, .squares = 18 * 2500.0, .cubes = 18 * 125e3});
+  for (int i = 0; i < 18; ++i) many.add_large(50, true);
+  many.add_rare_element(50, 18);
+  NoisePyramid one_element = pyramid_of({clean, clean});
+  one_element.at(0, 0, 0, 0).merge(many);
+  EXPECT_NEAR(t(one_element), alone, 1e-9);
+  // Nor do octaves that only one side still tells apart.
+  EXPECT_NEAR(t(pyramid_of({with_rare(40, 2), with_rare(1, 1e5)})), alone, 1e-9);
   // Values that are common in their elements tell no laws apart, and count with all others.
   EXPECT_NEAR(t(pyramid_of({rare, clean}, {16, 16}, 32, false)), alone, 1e-9);
   EXPECT_NEAR(t(pyramid_of({rare, clean}, {16, 16}, 60, false)),
