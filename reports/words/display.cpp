@@ -139,15 +139,15 @@ std::string with_option(std::string command, const std::string& option) {
   return command.replace(at + 1, end - at - 1, option);
 }
 
-/// The estimator on the claim's left side, which is held against the right one; "" without a
-/// sample.
+/// The estimator on the claim's left side, which is held against the right one; the test's name if
+/// it has no sample.
 std::string subject_of(const Test& test) {
   std::vector<std::string> words;
   boost::split(words, sides_of(test.claim).right, boost::is_any_of("(). *"));
   const auto subject = std::ranges::find_if(test.samples, [&](const Sample& sample) {
     return std::ranges::count(words, sample.estimator) == 0;
   });
-  return subject == test.samples.end() ? "" : subject->estimator;
+  return subject == test.samples.end() ? test.name : subject->estimator;
 }
 
 }  // namespace
@@ -292,36 +292,36 @@ SuiteDisplay display(const Suite& suite) {
 }
 
 std::vector<Suspect> suspects(const Suite& suite) {
+  const std::string broken = to_string(Standing::broken);
   std::map<std::string, int> claims;
-  std::map<std::string, double> least;  // log10 of p
+  std::map<std::string, double> least;       // log10 of p
+  std::map<std::string, std::string> first;  // the first test of each reason for no verdict
   std::vector<Suspect> all;
   for (const Test& test : suite.tests) {
     std::set<std::string> estimators;
     for (const Sample& sample : test.samples) estimators.insert(sample.estimator);
     for (const std::string& name : estimators) ++claims[name];
     if (!is_failed(standing(test))) continue;
-    const std::string subject = subject_of(test), how = to_string(standing(test));
+    const std::string how = to_string(standing(test));
+    const std::string name =
+        how == broken ? subject_of(test) : first.emplace(test.message, test.name).first->second;
     auto suspect = std::ranges::find_if(
-        all, [&](const Suspect& each) { return each.name == subject && each.standing == how; });
-    if (suspect == all.end())
-      suspect = all.insert(suspect, {suite.name, subject.empty() ? test.name : subject, how});
+        all, [&](const Suspect& each) { return each.name == name && each.standing == how; });
+    if (suspect == all.end()) suspect = all.insert(suspect, {suite.name, name, how});
     suspect->tests.push_back(test.id);
-    double& log10_p = least[suspect->name];
-    log10_p = std::min(log10_p, deciding_channel(test).log10_p.value_or(0));
+    least[name] = std::min(least[name], deciding_channel(test).log10_p.value_or(0));
   }
-  const auto is_broken = [](const Suspect& suspect) {
-    return suspect.standing == to_string(Standing::broken);
-  };
   // A tie goes to the estimator whose claims are broken most often, then most clearly.
   std::ranges::sort(all, {}, [&](const Suspect& suspect) {
-    return std::tuple(!is_broken(suspect), claims[suspect.name] == 0, -std::ssize(suspect.tests),
-                      claims[suspect.name], least[suspect.name], suspect.name);
+    return std::tuple(suspect.standing != broken, claims[suspect.name] == 0,
+                      -std::ssize(suspect.tests), claims[suspect.name], least[suspect.name],
+                      suspect.name);
   });
   for (Suspect& suspect : all) {
-    if (const int of = claims[suspect.name]; of > 0)
+    const int of = suspect.standing == broken ? claims[suspect.name] : 0;
+    if (of > 0)
       suspect.sentence =
-          fmt::format("{} {}", of_claims(static_cast<int>(suspect.tests.size()), of, "of its"),
-                      is_broken(suspect) ? "broken" : "without a verdict");
+          of_claims(static_cast<int>(suspect.tests.size()), of, "of its") + " broken";
   }
   return all;
 }

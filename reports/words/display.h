@@ -87,7 +87,7 @@ struct SuiteDisplay {
 SuiteDisplay display(const Suite&);
 
 /// The estimator on the left side of broken claims, with these claims. A broken claim whose left
-/// side has no sample is a suspect by itself. Claims without a verdict have suspects of their own.
+/// side has no sample is a suspect by itself, and so is the first without a verdict for a reason.
 struct Suspect {
   std::string suite;
   std::string name;
@@ -96,7 +96,7 @@ struct Suspect {
   std::string sentence;            ///< "4 of its 17 claims broken"
   ASSAY_FIELDS(Suspect, suite, name, standing, tests, sentence)
 };
-/// Every broken claim, and every one without a verdict, belongs to one suspect.
+/// Each broken claim, and each without a verdict, has one.
 std::vector<Suspect> suspects(const Suite&);
 
 struct SeriesDisplay {

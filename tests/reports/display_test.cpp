@@ -85,8 +85,11 @@ TEST(Suspects, AreTheEstimatorsOnTheLeftOfBrokenClaims) {
   suite.tests[3].samples.erase(suite.tests[3].samples.begin());
   suite.tests.push_back(broken_claim("5", {"shared", "c"}));
   suite.tests.back().ok = true;
+  for (const char* name : {"6", "7"}) suite.tests.push_back(broken_claim(name, {"sound", "x"}));
+  for (auto* test : {&suite.tests[5], &suite.tests[6]}) test->verdict = Verdict::error;
   const std::vector<Suspect> found = suspects(suite);
-  ASSERT_EQ(found.size(), 3u);
+  ASSERT_EQ(found.size(), 4u);
+  EXPECT_THAT(found[3].tests, ElementsAre("triangle/6", "triangle/7"));
   EXPECT_EQ(found[0].name, "shared");
   EXPECT_THAT(found[0].tests, ElementsAre("triangle/1", "triangle/2"));
   EXPECT_EQ(found[0].sentence, "2 of its 3\u00A0claims broken");
