@@ -496,22 +496,31 @@ class MeanTheta : public Theta {
   }
 
   /// Rare values that were never drawn would move a mean towards an end of its range. Where that
-  /// has no bound, they may be all that is missing.
+  /// has no bound they may explain the difference: values of probability p do, if they lie
+  /// difference / p from the mean. They are named up to 100 times the farthest seen.
   std::string caveat(const DrawnTest& test) const override {
-    constexpr std::uint64_t many = 16 * floor_of_evidence;
-    const TestOutcome& outcome = test.outcome;
-    const Question& question = outcome.question;
-    if (outcome.verdict != reports::Verdict::fail) return "";
-    const reports::Effect& effect = outcome.channels[0].effect;
-    const bool below = effect.estimate.value_or(0) < 0;
+    const Question& question = test.outcome.question;
+    if (test.outcome.verdict != reports::Verdict::fail) return "";
+    const ChannelOutcome& worst = test.outcome.channels[0];
+    const std::vector<ChannelData> data = data_of(test, worst.index);
+    const double theta = worst.effect.estimate.value_or(0);
+    const double difference =
+        (std::abs(theta) - worst.regions.claimed_edge()) * unit_of({question, worst.index, data});
     for (std::size_t side = 0; side < question.compared(); ++side) {
-      const stats::Range range = range_of(question.subjects[side], outcome.channels[0].index, {});
-      const bool upwards = below == (question.sign_of(side) > 0);
-      const std::uint64_t seen = outcome.secondaries(side) * outcome.plan.primaries[side];
-      if (std::isfinite(upwards ? range.high : range.low) || seen >= many) continue;
-      const double rarer = std::floor(static_cast<double>(std::max<std::uint64_t>(3, seen)) / 3);
+      const Subject& subject = question.subjects[side];
+      const stats::Range range = range_of(subject, worst.index, {});
+      const bool upwards = (theta < 0) == (question.sign_of(side) > 0);
+      const Moments& x = data[side].moments;
+      const auto primaries = static_cast<double>(data[side].primaries);
+      const double rarer = std::max(1.0, std::floor(static_cast<double>(x.count) * primaries / 3));
+      const double farthest =
+          std::sqrt(primaries) * std::max(x.maximum - x.mean, x.mean - x.minimum);
+      if (std::isfinite(upwards ? range.high : range.low)) continue;
+      if (difference * rarer > 100 * question.factor_of(side) * farthest) continue;
       return fmt::format("values rarer than 1 in {:.0f} may explain it{}", rarer,
-                         is_recorded(question.subjects[side]) ? "" : "; declare a range");
+                         is_recorded(subject) ? ""
+                         : upwards            ? "; declare their `high` end"
+                                              : "; declare their `low` end");
     }
     return "";
   }
