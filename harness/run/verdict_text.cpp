@@ -224,9 +224,10 @@ Reason with_more(const TestOutcome& outcome, double factor, const std::string& c
 
 /// n grows with the square of the factor by which the interval must shrink.
 Reason what_would_decide(const TestOutcome& outcome, const ChannelOutcome& channel) {
+  const char* condition = channel.regions.proof() ? " if the truth is what was seen" : "";
   if (channel.image && channel.image->wanted > 0) {
-    return with_more(outcome,
-                     channel.image->wanted / static_cast<double>(channel.image->replicates));
+    const auto replicates = static_cast<double>(channel.image->replicates);
+    return with_more(outcome, channel.image->wanted / replicates, condition);
   }
   const double beta = last_levels(outcome).beta;
   const stats::Interval interval = channel.evidence.interval(1 - 2 * beta);
@@ -246,9 +247,8 @@ Reason what_would_decide(const TestOutcome& outcome, const ChannelOutcome& chann
   };
   if (channel.regions.proof() && room.size < error) {
     const std::string where =
-        fmt::format("the estimate lies {} {} by less than a standard error; ",
-                    room.outside ? "beyond" : "within",
-                    channel.regions.within() ? "the margin" : "what must be proved");
+        fmt::format("the estimate {} the claim by less than a standard error; ",
+                    room.outside ? "misses" : "meets");
     if (!channel.regions.within()) {
       const std::string more = has_rows(outcome.question)      ? rows_noun(outcome.question)
                                : outcome.question.test->budget ? "`budget`"
@@ -264,7 +264,7 @@ Reason what_would_decide(const TestOutcome& outcome, const ChannelOutcome& chann
     }
   }
   const double more = factor(room.size);
-  if (std::isfinite(more)) return with_more(outcome, more);
+  if (std::isfinite(more)) return with_more(outcome, more, condition);
   return Reason("no number of observations would decide: the reference's own error is too large");
 }
 

@@ -207,7 +207,7 @@ test_mistakes_in_a_check_say_what_to_write() {
   awk 'BEGIN { for (s = 1; n < 200; ++n) {
     s = s * 16807 % 2147483647; print 0.8136 + 0.4 * s / 2147483647 } }' >near.txt
   expect 3 check 'mean(x) within 1% of 1' --estimator x=recorded,file=near.txt
-  contains out 'the estimate lies beyond the margin by less than a standard error'
+  contains out 'the estimate misses the claim by less than a standard error'
   expect 0 check --help
   contains out 'the most it may cost: 1e7 primaries with those of the'
   printf '%s\n' 'suite: parts' 'estimators: {a: {plugin: analytic/normal, mean: 0.02, primaries: 1},' \
