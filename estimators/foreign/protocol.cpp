@@ -34,6 +34,8 @@ constexpr std::array<BiasWord, 6> bias_words = {{{"unknown", std::nullopt},
 constexpr std::array<std::string_view, 5> domain_words = {"interval", "square", "triangle",
                                                           "hemisphere", "sphere"};
 
+constexpr const char* to_standard_error = "; print everything else to standard error";
+
 [[noreturn]] void wrong(std::string_view line, const std::string& why) {
   throw ProtocolError("its hello has the line `" + shown(line) + "`: " + why);
 }
@@ -427,13 +429,14 @@ void Reply::take_line(std::string_view line) {
   const std::uint64_t index = question_.first + numbers_.size() / width_;
   if (words.size() != width_) {
     throw ProtocolError("observation " + std::to_string(index) + " should be a line of " +
-                        of(width_, "number") + ", but it is `" + shown(line) + "`");
+                        of(width_, "number") + ", but it is `" + shown(line) + "`" +
+                        to_standard_error);
   }
   for (const std::string_view word : words) {
     const std::optional<double> value = parse_number(word);
     if (!value) {
       throw ProtocolError("observation " + std::to_string(index) + " has `" + shown(word) +
-                          "`, which is not a number");
+                          "`, which is not a number" + to_standard_error);
     }
     numbers_.push_back(*value);
   }
