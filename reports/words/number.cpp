@@ -145,9 +145,9 @@ bool is_ratio(const Effect& effect) {
 bool is_factor(const Effect& effect) { return reaches(effect, near_one); }
 
 std::string factor_text(double theta) {
-  // Three digits of a double; beyond its range the power of ten is written from the logarithm.
-  constexpr double largest = 700;
-  return std::abs(theta) < largest ? human(std::exp(theta), 3)
+  // Three digits, or four near 1; beyond a double the power of ten comes from the logarithm.
+  constexpr double largest = 700, near = 0.005;
+  return std::abs(theta) < largest ? human(std::exp(theta), std::abs(theta) < near ? 4 : 3)
                                    : scientific(theta / std::numbers::ln10);
 }
 
