@@ -23,6 +23,7 @@ test_good_suite_is_0() {
   write_suite good.yaml "$good"
   expect 0 run good.yaml
   contains out '✓ The claim is as it should be in'
+  "$assay" run - <good.yaml >out 2>err || fail 'no suite from standard input'
 }
 
 # Five lines have no room for a long note and for how to repeat it.
