@@ -7,6 +7,7 @@
 #include <boost/algorithm/string/trim.hpp>
 #include <charconv>
 #include <cmath>
+#include <numbers>
 #include <ranges>
 
 #include "harness/language/laws.h"
@@ -135,6 +136,8 @@ class Lexer {
     static constexpr std::array habits{
         Habit{"!=",
               "a claim cannot be `!=`; claim `==` and expect it to fail, or claim `<` or `>`"},
+        Habit{"&", "write two tests, or `mean(a) within 0.05 of 0.45`"},
+        Habit{"^", "a claim has no powers; compare squares, as `variance(…)`, or write a number"},
         Habit{"~", "write `==`, or `within 1% of` for near values"},
         Habit{"=", "a lone `=`; did you mean `==`?"},
         Habit{"±", "write `+-` for `±`"},
@@ -304,8 +307,10 @@ class Parser {
     const double number = lexer_.next().number;
     if (take("*")) {
       const Token factor = lexer_.peek();
-      if (factor.kind == Kind::number) {
-        refuse(factor.where, "a claim has no arithmetic; write the product as one number");
+      const bool is_pi = factor.is_word("pi");
+      if (is_pi || factor.kind == Kind::number) {
+        refuse(factor.where, "a claim has no arithmetic; write the product as one number, `{}`",
+               number * (is_pi ? std::numbers::pi : factor.number));
       }
       return ScaledQuantity{number, quantity()};
     }
@@ -344,6 +349,8 @@ class Parser {
          std::initializer_list<std::pair<std::string_view, const char*>>{
              {" E average avg expectation expected ", "; did you mean `mean(…)`?"},
              {" stddev stdev std deviation standard_deviation sd ", "; square it: `variance(…)`"},
+             {" sqrt ", "; compare squares, as `variance(…)`, or write the root as a number"},
+             {" and AND ", "; write two tests, or `mean(a) within 0.05 of 0.45`"},
              {" error mse rmse MSE RMSE ", "; it has two parts: `bias(…)` and `variance(…)`"},
              {" median ", "; it is a quantile: `quantile(…, 0.5)`"},
              {" pi PI Pi ", "; write it as a number, 3.141592653589793"},
