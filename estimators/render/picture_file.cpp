@@ -149,7 +149,10 @@ std::unique_ptr<const PictureFile> open_picture(const std::string& file) {
   }
   const Kind* const kind = kind_of(file);
   if (kind == nullptr) {
-    render::refuse_picture(file, "it is no OpenEXR, PFM or PNG picture; convert it to OpenEXR");
+    render::refuse_picture(file,
+                           std::filesystem::is_empty(file, ignored)
+                               ? "it is empty"
+                               : "it is no OpenEXR, PFM or PNG picture; convert it to OpenEXR");
   }
   return kind->open(file);
 }

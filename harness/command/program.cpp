@@ -104,7 +104,8 @@ int program(const std::vector<std::string>& arguments, Messages* ranks) {
     fmt::print(stderr, "{}", failure_text(e, check != nullptr ? check->arguments.claim : ""));
   } catch (const std::runtime_error& e) {
     // An outside cause: a full disk, a vanished file.
-    fmt::print(stderr, "{}", in_lines(e.what()));
+    const char* what = std::ferror(stdout) != 0 ? "standard output: " : "";
+    fmt::print(stderr, "{}", in_lines(what + std::string(e.what())));
   } catch (const std::bad_alloc&) {
     fmt::print(
         stderr, "{}",

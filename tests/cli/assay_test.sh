@@ -606,6 +606,7 @@ test_full_disk_is_no_success() {
   "$assay" run good.yaml --report json=- >/dev/full 2>err || code=$?
   [ "$code" -eq 2 ] || fail "ended with $code, not 2"
   contains err 'No space left on device'
+  "$assay" help claims >/dev/full 2>err || contains err 'standard output: cannot write'
   expect 2 run good.yaml --report html=/dev/full
   contains err 'cannot write /dev/full'
   lacks out '/dev/full'

@@ -143,10 +143,10 @@ TEST_F(ExrFiles, KnowsTheSamplesThatPbrtWrites) {
 
 TEST_F(ExrFiles, RefusesWhatIsNoPicture) {
   expect_refused("it does not open: No such file");
-  for (const char* bytes : {"1 2 3\n", ""}) {
-    write_bytes(file_, bytes);
-    expect_refused("it is no OpenEXR, PFM or PNG picture");
-  }
+  write_bytes(file_, "1 2 3\n");
+  expect_refused("it is no OpenEXR, PFM or PNG picture");
+  write_bytes(file_, "");
+  expect_refused("it is empty");
   write_deep(file_);
   expect_refused("deep pixels");
   write_scan_lines(file_, {.channels = {"R", "G"}});
