@@ -85,9 +85,9 @@ std::string per_cent(double probability) {
 }
 
 std::string outlook_text(const char* when, const stats::Outlook& outlook) {
-  return fmt::format("{}: pass {}, fail {}, inconclusive {}, draws {:.0f} %", when,
-                     per_cent(outlook.pass), per_cent(outlook.fail), per_cent(outlook.inconclusive),
-                     100 * outlook.drawn);
+  return fmt::format("{}: pass {}, fail {}, inconclusive {}, draws {:.0f} % of its observations",
+                     when, per_cent(outlook.pass), per_cent(outlook.fail),
+                     per_cent(outlook.inconclusive), 100 * outlook.drawn);
 }
 
 /// Probability that the test ends otherwise than the suite expects: the claim holds, or is off by
@@ -177,7 +177,12 @@ void write(std::string& page, const SuiteRun& run) {
     return;
   }
   std::vector<Row> rows;
-  for (const TestWork& work : run.tests) rows.push_back(row_of(work.outcome, run.pilots));
+  const char* planted = "";
+  for (const TestWork& work : run.tests) {
+    rows.push_back(row_of(work.outcome, run.pilots));
+    if (work.outcome.question.test->expect != reports::Verdict::fail) continue;
+    planted = " and every planted bug is as large as its `detect`";
+  }
   std::array<int, column_count> widths{};
   for (std::size_t c = 0; c < column_count; ++c) {
     widths[c] = reports::columns(headings[c]);
@@ -192,11 +197,10 @@ void write(std::string& page, const SuiteRun& run) {
     not_ok += row.not_ok;
   }
   page += "\n";
-  page +=
-      on_page(fmt::format("If every claim holds exactly and every planted bug is as large as its "
-                          "`detect`, some claim fails or stays undecided with probability about "
-                          "{}. A test without a forecast counts with its alpha and beta.",
-                          per_cent(std::min(1.0, not_ok))));
+  page += on_page(fmt::format(
+      "If every claim holds exactly{}, some claim fails or stays undecided with probability about "
+      "{}. A test without a forecast counts with its alpha and beta.",
+      planted, per_cent(std::min(1.0, not_ok))));
   page += "\n";
 }
 

@@ -189,9 +189,8 @@ std::uint64_t paid_for(const TestOutcome& test, std::uint64_t whole, std::uint64
   }
   refuse(
       test.question.test->place_of("budget"),
-      "its budget (or its share of the suite's) of {} primaries is too small: the pilot takes {}, "
-      "and two observations, the fewest that can be tested, {}; give a larger budget, or fewer "
-      "`primaries`",
+      "its budget (or its share of the suite's), {} primaries, must pay for {} of the pilot and at "
+      "least {} of the test; give a larger budget, or fewer `primaries`",
       whole, pilots, fewest_tested * each);
 }
 

@@ -77,8 +77,8 @@ struct PlaceEffect {
 };
 std::optional<PlaceEffect> effect_at_place(const DrawnTest& test);
 
-/// "G differs by -5.1 %, B by -4.9 %": plain means of components that clearly differ there, three
-/// at most. "B by -4.9 % unweighted" is the place's own component, if its effect says otherwise.
+/// "G differs by -5.1 %, B by -4.9 % (plain means)": components that clearly differ there, three at
+/// most. The place's own component is among them if its effect says otherwise.
 std::string others_at(const DrawnTest& test, const PlaceEffect& place);
 
 /// "; at that place it is 3 % too bright (2 to 4 %): 1.03 against 1". It is "" unless one cell

@@ -193,11 +193,10 @@ std::string others_at(const DrawnTest& test, const PlaceEffect& place) {
     if (!is_clear) continue;
     const reports::Effect effect{.relative = base != 0};
     const double unit = effect.relative ? std::abs(base) : 1;
-    texts.push_back(
-        (texts.empty() ? "unweighted " + names[c] + " differs by " : names[c] + " by ") +
-        reports::theta_text(difference / unit, effect));
+    texts.push_back(names[c] + (texts.empty() ? " differs by " : " by ") +
+                    reports::theta_text(difference / unit, effect));
   }
-  return fmt::format("{}", fmt::join(texts, ", "));
+  return texts.empty() ? "" : fmt::format("{} (plain means)", fmt::join(texts, ", "));
 }
 
 std::string where_it_differs(const DrawnTest& test) {

@@ -365,8 +365,7 @@ std::vector<EstimatorEntry> estimators_of(const std::vector<Source>& sources,
   }
   for (const EstimatorEntry& entry : given) {
     if (entry_named(used, entry.name)) continue;
-    refuse(entry.where,
-           "`{0}` is used nowhere, only {1}: write `{0}` in its place, or leave the option out",
+    refuse(entry.where, "the claim names {1}, not `{0}`: name `{0}` there, or leave the option out",
            entry.name, quoted(mapped(used, &EstimatorEntry::name)));
   }
   return used;

@@ -47,8 +47,8 @@ constexpr const char* legend =
 alone   this method forced, in one look, its warnings (gates) ignored
 open    inconclusive      red  an assumption violated      n  mean observations
 by      the method that judges most runs
-errs    the rate of mistakes is at least this. A mistake is a true claim that
-        fails; for tost and other proofs, a claim off by `detect` that passes
+errs    at least this part of the runs errs: a true claim fails or, for tost
+        and other proofs, a claim off by `detect` passes
 !!  mistaken too often for certain
 !   alone mistaken too often for certain, with no assumption violated
 )";

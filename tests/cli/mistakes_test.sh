@@ -191,7 +191,7 @@ test_mistakes_in_a_check_say_what_to_write() {
     check "$claim" --detect 5
   answers 2 '--detect 0: `detect` must be above 0' check "$claim" --detect 0
   answers 2 '--test welch: `welch` cannot test `mean(luminaire/area) == analytic`; there is `t`' check "$claim" --test welch
-  answers 2 '`area` is used nowhere, only `luminaire/area`: write `area` in its place' \
+  answers 2 'the claim names `luminaire/area`, not `area`: name `area` there' \
     check "$claim" --estimator area=luminaire/area
   answers 2 'the plugin needs a name, which the claim uses: `--estimator x=recorded,file=one.txt`' \
     check 'mean(x) == 1' --estimator recorded,file=one.txt

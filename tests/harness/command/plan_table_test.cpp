@@ -244,7 +244,7 @@ TEST_F(Forecasts, OfProofsHoldsByTheAdvantageOrStandsAtTheBorder) {
 TEST_F(PlanTable, BoundsTheProbabilityThatASuiteIsNotOk) {
   EXPECT_THAT(plan_text(planned("  - {name: a, claim: mean(normal) == 2, detect: 0.01}\n"
                                 "  - {name: b, claim: mean(normal) <= 2, detect: 0.01}\n")),
-              HasSubstr("some claim fails or stays undecided with probability about 0.9"));
+              HasSubstr("some claim fails or stays undecided with\nprobability about 0.9"));
 }
 
 TEST_F(PlanTable, SaysWhereTheDetectOfALawIsTheDefault) {
