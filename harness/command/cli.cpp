@@ -21,13 +21,11 @@ Texts plugin_names() {
 }
 
 std::string read_suite(const std::string& text, const std::string& /*option*/) {
-  if (text.ends_with(".json")) {
-    refuse({}, "a suite is a YAML file; a saved run is shown by `assay report " + text + "`");
-  }
-  if (text.find('(') != std::string::npos && !text.ends_with("ml")) {
-    refuse({}, "`{}` is a claim, not a suite file; `assay check` tests one claim", text);
-  }
-  return text == "-" ? "/dev/stdin" : text;
+  if (text == "-") return "/dev/stdin";
+  const bool is_run = text.ends_with(".json");
+  if (!is_run && (text.find('(') == std::string::npos || text.ends_with("ml"))) return text;
+  refuse({}, is_run ? "a suite is a YAML file; a saved run is shown by `assay report " + text + "`"
+                    : "`" + text + "` is a claim, not a suite file; `assay check` tests one claim");
 }
 
 std::string read_claim(const std::string& text, const std::string& /*option*/) {

@@ -28,9 +28,9 @@ struct Row {
   double not_ok = 0;
 };
 
-std::string count_of(double count) {
-  return reports::plain_spaces(
-      reports::count_text(static_cast<std::uint64_t>(std::llround(count))));
+std::string count_of(auto count) {
+  const auto whole = std::llround(static_cast<double>(count));
+  return reports::plain_spaces(reports::count_text(static_cast<std::uint64_t>(whole)));
 }
 
 /// The cost of a test's last look, or of several streams.
@@ -56,12 +56,9 @@ struct Total {
 /// One number, both if the subjects differ, or a sweep's least and most.
 std::string primaries_text(const Plan& plan) {
   const auto [least, most] = std::ranges::minmax_element(plan.primaries);
-  const auto text = [](std::uint64_t primaries) {
-    return count_of(static_cast<double>(primaries));
-  };
-  if (*least == *most) return text(*most);
-  if (plan.primaries.size() > 2) return text(*least) + " to " + text(*most);
-  return text(plan.primaries[0]) + " + " + text(plan.primaries[1]);
+  if (*least == *most) return count_of(*most);
+  if (plan.primaries.size() > 2) return count_of(*least) + " to " + count_of(*most);
+  return count_of(plan.primaries[0]) + " + " + count_of(plan.primaries[1]);
 }
 
 std::string effect_text(const TestOutcome& test, const Forecast& forecast) {
@@ -117,7 +114,7 @@ Row row_of(const TestOutcome& test, const Pilots& pilots) {
   Row row{.name = test.question.test->name + by, .not_ok = not_ok(test, expected)};
   row.cells = {primaries_text(plan),
                fmt::format("{}", plan.looks.sizes.size()),
-               count_of(static_cast<double>(plan.most_secondaries())),
+               count_of(plan.most_secondaries()),
                count_of(total.primaries),
                total.known ? count_of(total.rays) : unknown,
                total.known ? reports::plain_spaces(reports::duration(total.seconds)) : unknown,

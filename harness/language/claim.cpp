@@ -101,8 +101,9 @@ class Lexer {
     Token token = taken(Token::Kind::number, found.length);
     token.number = found.value;
     if (found.overflows) refuse(token.where, "the number `{}` does not fit a double", token.text);
-    refuse_quotient(token);
-    return token;
+    if (divisor() == 0) return token;
+    refuse(token.where, "a claim has no arithmetic; write the quotient as one number, `{}`",
+           token.number / divisor());
   }
 
   /// The number after a `/` that comes next; 0 without one.
@@ -115,42 +116,31 @@ class Lexer {
     return scan_number(after.rest()).value;
   }
 
-  /// InputError, with its value, for a number that another divides.
-  void refuse_quotient(const Token& number) const {
-    if (divisor() == 0) return;
-    refuse(number.where, "a claim has no arithmetic; write the quotient as one number, `{}`",
-           number.number / divisor());
-  }
-
   Token symbol() {
     for (const std::string_view known :
          {"===", "+/-", "==", "=<", "=>", "<=", ">=", "+-", "<", ">", "(", ")", ",", "*", "%"}) {
       if (rest().starts_with(known)) return taken(Token::Kind::symbol, known.size());
     }
-    struct Habit {
-      std::string_view written, advice;
-    };
     static constexpr std::string_view no_arithmetic =
         "a claim has no arithmetic; compare two quantities, as in `mean(a) == mean(b)` or `mean(a) "
         "== 2 * mean(b)`";
-    static constexpr std::array habits{
-        Habit{"!=",
-              "a claim cannot be `!=`; claim `==` and expect it to fail, or claim `<` or `>`"},
-        Habit{"&", "write two tests, or `mean(a) within 0.05 of 0.45`"},
-        Habit{"^", "a claim has no powers; compare squares, as `variance(…)`, or write a number"},
-        Habit{"~", "write `==`, or `within 1% of` for near values"},
-        Habit{"=", "a lone `=`; did you mean `==`?"},
-        Habit{"±", "write `+-` for `±`"},
-        Habit{"≤", "write `<=` for `≤`"},
-        Habit{"≥", "write `>=` for `≥`"},
-        Habit{"\"", "no quotes inside a claim"},
-        Habit{"'", "no quotes inside a claim"},
-        Habit{"-", no_arithmetic},
-        Habit{"+", no_arithmetic},
-        Habit{"/", no_arithmetic},
-        Habit{".",
-              "the name of a part must follow the `.` at once; a file is read by an estimator of "
-              "the plugin `recorded`"},
+    static constexpr std::pair<std::string_view, std::string_view> habits[]{
+        {"!=", "a claim cannot be `!=`; claim `==` and expect it to fail, or claim `<` or `>`"},
+        {"&", "write two tests, or `mean(a) within 0.05 of 0.45`"},
+        {"^", "a claim has no powers; compare squares, as `variance(…)`, or write a number"},
+        {"~", "write `==`, or `within 1% of` for near values"},
+        {"=", "a lone `=`; did you mean `==`?"},
+        {"±", "write `+-` for `±`"},
+        {"≤", "write `<=` for `≤`"},
+        {"≥", "write `>=` for `≥`"},
+        {"\"", "no quotes inside a claim"},
+        {"'", "no quotes inside a claim"},
+        {"-", no_arithmetic},
+        {"+", no_arithmetic},
+        {"/", no_arithmetic},
+        {".",
+         "the name of a part must follow the `.` at once; a file is read by an estimator of "
+         "the plugin `recorded`"},
     };
     const std::string before = boost::trim_copy(std::string(text_.substr(0, at_)));
     const std::string divided = boost::trim_copy(before.substr(before.find_last_of("=<>") + 1));
@@ -160,8 +150,8 @@ class Lexer {
       refuse(place(), "a claim has no arithmetic; a factor stands on the right: `{} * {}`",
              1 / divisor(), divided);
     }
-    for (const Habit& habit : habits) {
-      if (rest().starts_with(habit.written)) refuse(place(), std::string(habit.advice));
+    for (const auto& [written, advice] : habits) {
+      if (rest().starts_with(written)) refuse(place(), std::string(advice));
     }
     std::size_t length = 1;
     while ((static_cast<unsigned char>(ahead(length)) & 0xC0U) == 0x80) ++length;
@@ -258,8 +248,7 @@ class Parser {
 
   Quantity slope(const Token& name) {
     expect("(", "`(` after `slope`");
-    const Token inner = lexer_.peek();
-    if (inner.is_word("slope")) refuse(inner.where, "a slope has no slope");
+    if (lexer_.peek().is_word("slope")) refuse(lexer_.peek().where, "a slope has no slope");
     Quantity quantity = this->quantity();
     quantity.slope = true;
     quantity.where = name.where;

@@ -423,13 +423,6 @@ bool is_doubted(const TestOutcome& outcome) {
          (lies_above(effect, 0) || lies_below(effect, 0));
 }
 
-void add_caveat(const DrawnTest& test, TestOutcome& outcome) {
-  const std::string caveat = outcome.question.theta->caveat(test);
-  if (caveat.empty()) return;
-  outcome.message += "; " + caveat;
-  if (outcome.verdict == Verdict::fail) outcome.advice = reports::Advice{.words = caveat};
-}
-
 void take_sound_look(TestWork& work, const DrawnTest& test, bool may_go_on) {
   TestOutcome& outcome = work.outcome;
   // A dependence that the pilot did not show is no plan's to mend.
@@ -452,7 +445,10 @@ void take_sound_look(TestWork& work, const DrawnTest& test, bool may_go_on) {
       Reason reason = narrate(outcome);
       outcome.message = reason.text + where_it_differs(test);
       outcome.advice = std::move(reason.advice);
-      if (is_doubted(outcome)) add_caveat(test, outcome);
+      const std::string caveat = is_doubted(outcome) ? outcome.question.theta->caveat(test) : "";
+      if (!caveat.empty()) outcome.message += "; " + caveat;
+      if (!caveat.empty() && outcome.verdict == Verdict::fail)
+        outcome.advice = reports::Advice{.words = caveat};
     }
   }
   require_activation(outcome, test);
