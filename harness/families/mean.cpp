@@ -513,10 +513,9 @@ class MeanTheta : public Theta {
       const Moments& x = data[side].moments;
       const auto primaries = static_cast<double>(data[side].primaries);
       const double rarer = std::max(1.0, std::floor(static_cast<double>(x.count) * primaries / 3));
-      const double farthest =
-          std::sqrt(primaries) * std::max(x.maximum - x.mean, x.mean - x.minimum);
+      const double far = std::sqrt(primaries) * std::max(x.maximum - x.mean, x.mean - x.minimum);
       if (std::isfinite(upwards ? range.high : range.low)) continue;
-      if (difference * rarer > 100 * question.factor_of(side) * farthest) continue;
+      if (difference * rarer > 100 * question.factor_of(side) * far) continue;
       return fmt::format("values rarer than 1 in {:.0f} may explain it{}", rarer,
                          is_recorded(subject) ? ""
                          : upwards            ? "; declare their `high` end"

@@ -386,9 +386,10 @@ void read_tests(const Document& document, const Value& list, const Value& estima
     }
     const auto [first, is_new] = names.emplace(test.name, test.where);
     if (!is_new) {
-      refuse(test.where,
-             "a second test named `{}`; the first is at {}:{}; give one of them a `name` of its own",
-             test.name, first->second.line, first->second.column);
+      refuse(
+          test.where,
+          "a second test named `{}`; the first is at {}:{}; give one of them a `name` of its own",
+          test.name, first->second.line, first->second.column);
     }
     if (!sound) return;
     check_sweep(suite, test);

@@ -253,9 +253,16 @@ Document::Document(std::string file, std::string_view text, std::optional<Locati
   DocumentBuilder builder(*this);
   try {
     YAML::Parser parser(in);
-    while (parser.HandleNextDocument(builder)) {
-    }
+    while (parser.HandleNextDocument(builder)) continue;
   } catch (const YAML::Exception& e) {
+    const std::string_view above = line(e.mark.line);
+    const auto first = above.find_first_not_of(' ');
+    const bool is_key = first != above.npos && above.find(':') == above.npos &&
+                        above[first] != '#' && above[first] != '-';
+    const bool at_its_key =
+        line(e.mark.line + 1).find(':') == static_cast<std::size_t>(e.mark.column);
+    if (e.msg == YAML::ErrorMsg::MAP_VALUE && is_key && at_its_key)
+      refuse({file_, e.mark.line, 1}, "this line may lack a `:` after its key");
     refuse(at_most_last(e.mark.line + 1, e.mark.column + 1), readable(e.msg));
   }
   if (!builder.complete()) refuse({file_, 1, 1}, "the file is empty");
