@@ -2,6 +2,7 @@
 #include <malloc.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <memory>
 
 #include "estimators/catalogue.h"
@@ -21,9 +22,10 @@ Texts plugin_names() {
 }
 
 std::string read_suite(const std::string& text, const std::string& /*option*/) {
-  if (text == "-") return "/dev/stdin";
   const bool is_run = text.ends_with(".json");
-  if (!is_run && (text.find('(') == std::string::npos || text.ends_with("ml"))) return text;
+  const bool is_claim = text.find('(') != std::string::npos && !std::filesystem::exists(text);
+  if (text == "-") refuse({}, "a suite is a file, so that its tests can be repeated: write one");
+  if (!is_run && !is_claim) return text;
   refuse({}, is_run ? "a suite is a YAML file; a saved run is shown by `assay report " + text + "`"
                     : "`" + text + "` is a claim, not a suite file; `assay check` tests one claim");
 }
