@@ -88,8 +88,10 @@ Recorded find_test(const reports::Record& record, const std::string& file,
   const Location where{.file = file};
   if (matching.size() == 1) return matching.front();
   if (!matching.empty()) {
-    refuse(where, "{} tests match{}; give the id of one, or more of it: {}", matching.size(),
-           name.empty() ? "" : " `" + name + "`", some_ids(matching));
+    refuse(where, "{} tests match{}: {}", matching.size(),
+           name.empty() ? "; give the id of one, or a part of it"
+                        : " `" + name + "`; give the id of one, or more of it",
+           some_ids(matching));
   }
   if (all.empty()) refuse(where, "this run has no test");
   const std::string near = meant(name, all);

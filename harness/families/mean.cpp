@@ -497,7 +497,8 @@ class MeanTheta : public Theta {
 
   /// Rare values that were never drawn would move a mean towards an end of its range. Where that
   /// has no bound they may explain the difference: values of probability p do, if they lie
-  /// difference / p from the mean. They are named up to 100 times the farthest seen.
+  /// difference / p from the mean. They are named up to 100 times the farthest seen, of a mean of n
+  /// primaries root n times as far.
   std::string caveat(const DrawnTest& test) const override {
     const Question& question = test.outcome.question;
     if (test.outcome.verdict != reports::Verdict::fail) return "";

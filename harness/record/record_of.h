@@ -134,8 +134,8 @@ struct ShardFile {
 
 /// The record of the whole run, with Holm over each suite's family. It equals one run's record byte
 /// for byte, except for suites marked `timed`, times and threads. Shards may come in any order. A
-/// missing one's tests are missing. InputError, with file names, unless all are shards of one run,
-/// each given once.
+/// missing one's tests are skipped; `seconds` is the sum. InputError, with file names, unless all
+/// are shards of one run, each given once.
 reports::Record merge(std::vector<ShardFile> shards);
 
 /// Reads, merges and reports. Returns the exit code of the whole run, 1 if a shard is missing.

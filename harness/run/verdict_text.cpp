@@ -249,10 +249,14 @@ Reason what_would_decide(const TestOutcome& outcome, const ChannelOutcome& chann
     const std::string where =
         fmt::format("the estimate {} the claim by less than a standard error; ",
                     room.outside ? "misses" : "meets");
-    if (!channel.regions.within())
-      return Reason::advising(where,
-                              "if both sides may be equal, claim `within` a margin; "
-                              "otherwise give more observations");
+    if (!channel.regions.within()) {
+      const std::string more = has_rows(outcome.question)      ? rows_noun(outcome.question)
+                               : outcome.question.test->budget ? "`budget`"
+                                                               : "observations";
+      return Reason::advising(
+          where,
+          "if both sides may be equal, claim `within` a margin; otherwise give more " + more);
+    }
     if (const double exact = factor(*channel.regions.detect); std::isfinite(exact)) {
       Reason more = with_more(outcome, exact, " if the claim holds exactly");
       more.text = where + more.text;

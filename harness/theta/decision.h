@@ -87,9 +87,10 @@ struct Regions {
   stats::Range between(double edge) const;
 };
 
+/// Natural logarithm of the p-value of "theta in C".
 double log_p_claimed(const Evidence& evidence, const Regions& regions);
 
-/// 0 where there is no F.
+/// Natural logarithm of the p-value of "theta in F"; 0 where there is no F.
 double log_p_forbidden(const Evidence& evidence, const Regions& regions);
 
 /// The tail of the statistic that speaks against C.

@@ -22,6 +22,7 @@ struct GateKind {
   bool says_what_helps = false;  ///< its sentence does
   Falls falls = Falls::not_known;
 
+  /// If it is red the test goes on, and ends inconclusive.
   bool needs_more() const { return falls != Falls::not_known; }
 };
 

@@ -86,8 +86,8 @@ struct SuiteDisplay {
 };
 SuiteDisplay display(const Suite&);
 
-/// The estimator on the left side of broken claims, with these claims. A broken claim whose left
-/// side has no sample is a suspect by itself, and so is the first without a verdict for a reason.
+/// The estimator on the left side of broken claims, with these claims. A claim whose left side has
+/// no sample is a suspect alone. Claims without a verdict share one by their reason.
 struct Suspect {
   std::string suite;
   std::string name;

@@ -1,9 +1,5 @@
 #pragma once
 
-#include <cstddef>
-#include <span>
-#include <vector>
-
 #include "stats/cells/cell_quadrature.h"
 #include "stats/cells/plane_cells.h"
 

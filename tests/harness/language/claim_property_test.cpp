@@ -1,7 +1,6 @@
 // Claims are made from a description, written and read again. Every text makes a claim or an
 // InputError.
 
-#include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
 #include "estimators/stream.h"

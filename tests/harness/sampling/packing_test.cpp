@@ -1,6 +1,5 @@
 #include "harness/sampling/packing.h"
 
-#include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
 #include "harness/sampling/executor.h"

@@ -1,6 +1,5 @@
 #include "stats/basics/moments.h"
 
-#include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
 #include "tests/stats/prelude.h"

@@ -1,6 +1,5 @@
 #include "stats/planning/holm.h"
 
-#include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
 #include "tests/stats/prelude.h"
