@@ -186,8 +186,9 @@ NoisePyramid::Around NoisePyramid::around(const Rectangle& window, std::size_t c
   for (const Level& level : levels_) {
     if (level.side < sides_around * size && &level != &levels_.back()) continue;
     const std::size_t block_of = level.index(x / level.side, y / level.side, channel);
-    found.blocks.push_back({&level.noise[0][block_of], &level.noise[1][block_of]});
-    for (const PooledNoise* side : found.blocks.back()) {
+    found.blocks.push_back({{&level.noise[0][block_of], &level.noise[1][block_of]},
+                            level.side >= sides_around * size});
+    for (const PooledNoise* side : found.blocks.back().sides) {
       if (side->top() == PooledNoise::no_octave) continue;
       found.last = std::max(found.last, side->top());
       found.first = std::min(found.first, side->bottom());
@@ -209,7 +210,8 @@ bool NoisePyramid::of_one_law(const Around& near, double toward) const {
   // The root of a count plus 3/8 has the standard error 1/2 (Anscombe 1948), of counts in clusters
   // the root of their mean size times that.
   const auto root = [](double count) { return std::sqrt(count + 0.375); };
-  return std::ranges::all_of(near.blocks, [&](const Sides& here) {
+  return std::ranges::all_of(near.blocks, [&](const Block& each) {
+    const auto& here = each.sides;
     const double more = root(here[0]->noisier()) - root(here[1]->noisier());
     if (std::abs(more) > errors_of_signs * std::numbers::sqrt2 / 2) return false;
     std::array<PooledNoise::Rare, sides_of_pair> beyond = {};
@@ -233,7 +235,7 @@ bool NoisePyramid::of_one_law(const Around& near, double toward) const {
 }
 
 double NoisePyramid::growth(const std::array<PooledNoise::Moments, sides_of_pair>& here,
-                            double toward) const {
+                            double toward, const std::array<double, sides_of_pair>& parts) const {
   std::array<double, sides_of_pair> third = {};
   for (std::size_t s = 0; s < sides_of_pair; ++s) {
     third[s] = (s == 0 ? toward : -toward) * here[s].third * square(inverse(s));
@@ -242,8 +244,7 @@ double NoisePyramid::growth(const std::array<PooledNoise::Moments, sides_of_pair
   double largest = 0;
   for (std::size_t s = 0; s < sides_of_pair; ++s) {
     const double second = here[s].second * inverse(s);
-    // Skewness of the other side takes away, and adds nothing.
-    const double own = std::min(third[s], third[0] + third[1]);
+    const double own = third[s] + parts[1 - s] * std::min(0.0, third[1 - s]);
     if (own > 0 && second > 0) largest = std::max(largest, own / second);
   }
   return largest;
@@ -254,23 +255,31 @@ std::optional<double> NoisePyramid::growth_of_blocks(const CellNoise& cell, doub
                                                      std::size_t channel) const {
   const Around near = around(window, channel);
   const double toward = cell.alternates || (sign < 0) != (cell.concentration < 0) ? 1 : -1;
-  std::optional<double> largest = growth_toward(near, toward);
+  std::optional<double> largest = growth_toward(cell, near, toward);
   if (largest) *largest *= std::abs(cell.concentration);
   return largest;
 }
 
-std::optional<double> NoisePyramid::growth_toward(const Around& near, double toward) const {
+std::optional<double> NoisePyramid::growth_toward(const CellNoise& cell, const Around& near,
+                                                  double toward) const {
   constexpr double fewest = 2;  // One giant tells no size of the rare.
   if (of_one_law(near, toward)) return std::nullopt;
   double largest = 0;
-  for (const auto& [a, b] : near.blocks) {
+  for (const auto& [sides, is_wide] : near.blocks) {
+    const auto& [a, b] = sides;
+    const auto grow = [&](const std::array<PooledNoise::Moments, sides_of_pair>& here) {
+      std::array<double, sides_of_pair> parts{1, 1};
+      for (std::size_t s = 0; is_wide && s < sides_of_pair; ++s) {
+        const double usual = here[s].second * inverse(s) * std::abs(cell.concentration);
+        if (usual > 0) parts[s] = std::min(1.0, cell.variance[s] / usual);
+      }
+      largest = std::max(largest, growth(here, toward, parts));
+    };
     double beyond = 0;
     for (int octave = near.last; octave >= near.first; --octave) {
       beyond += (lacking(toward) == 0 ? a : b)->rare(octave).count;
-      largest = std::max(largest, growth({a->cut_off(octave), b->cut_off(octave)}, toward));
-      if (beyond < fewest) continue;
-      largest =
-          std::max(largest, growth({a->rare_cut_off(octave), b->rare_cut_off(octave)}, toward));
+      grow({a->cut_off(octave), b->cut_off(octave)});
+      if (beyond >= fewest) grow({a->rare_cut_off(octave), b->rare_cut_off(octave)});
     }
   }
   return largest;

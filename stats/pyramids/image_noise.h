@@ -144,7 +144,8 @@ class NoisePyramid {
   // sides have different laws in one of them. That is where one is noisier for its mean in too many
   // elements (sign test). It is also where the darker has too many rare values beyond an octave, or
   // far too few. A reference has a law of its own, and what is held against it may lack values of
-  // either sign.
+  // either sign. Skewness of the other side takes away from k3, as far as the cell has it: by the
+  // part of a wide block's noise that this side has in the cell.
   //
   // Between different laws a cell is no clearer than values allow that it never showed. They may be
   // as large as the noise of its neighbours.
@@ -168,10 +169,13 @@ class NoisePyramid {
       return (y * width + x) * channels + channel;
     }
   };
-  using Sides = std::array<const PooledNoise*, sides_of_pair>;
+  struct Block {
+    std::array<const PooledNoise*, sides_of_pair> sides;
+    bool is_wide;  // It holds much beside the cell.
+  };
   // The blocks around a cell, and the octaves that any of them tells apart.
   struct Around {
-    std::vector<Sides> blocks;
+    std::vector<Block> blocks;
     int first = 0;
     int last = 0;
   };
@@ -180,13 +184,17 @@ class NoisePyramid {
   // The side that may have missed values: the darker, or the one beside a reference.
   std::size_t lacking(double toward) const { return toward > 0 || replicates_[1] == 0 ? 0 : 1; }
   bool of_one_law(const Around& near, double toward) const;
-  double growth(const std::array<PooledNoise::Moments, sides_of_pair>& here, double toward) const;
+  // The k3 / k2 of a block of these moments. `parts` is how much of a block's noise each side has
+  // in the cell itself.
+  double growth(const std::array<PooledNoise::Moments, sides_of_pair>& here, double toward,
+                const std::array<double, sides_of_pair>& parts) const;
   // ln p of an effect that values could explain which the cell never showed, as large as the noise
   // of its neighbours (constant_sample.h).
   double log_p_with_unseen(const ImageEffect& effect, double weights) const;
   // The k3 / k2 of one element, as the blocks tell it of an effect toward a side. None where the
   // sides are of one law.
-  std::optional<double> growth_toward(const Around& near, double toward) const;
+  std::optional<double> growth_toward(const CellNoise& cell, const Around& near,
+                                      double toward) const;
   std::optional<double> growth_of_blocks(const CellNoise& cell, double sign,
                                          const Rectangle& window, std::size_t channel) const;
 

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <cmath>
-
 #include "harness/theta/decision.h"
 #include "stats/tails/tails.h"
 

@@ -82,7 +82,7 @@ NoisePyramid pyramid_of(const std::array<std::vector<double>, sides_of_pair>& va
   return noise;
 }
 
-constexpr Rectangle pixel{3, 3, 1, 1};
+constexpr Rectangle place{3, 3, 3, 3};
 // Its neighbours are calm.
 const CellNoise dark{
     .effect = -3, .variance = {.0625, .0625}, .degrees = 30, .weights = 1e9, .concentration = 1};
@@ -98,7 +98,7 @@ TEST(NoisePyramid, HasTheVarianceOfEqualMeans) {
   const std::vector<double> clean = with_rare(0), rare = with_rare(40);
   const auto t_of = [](double growth) { return -3 / std::sqrt(2.0 / 16 + 3 * growth / 16); };
   const double alone = t_of(0);
-  const auto t = [](const NoisePyramid& noise) { return noise.kept(dark, pixel, 0).t(); };
+  const auto t = [](const NoisePyramid& noise) { return noise.kept(dark, place, 0).t(); };
   EXPECT_NEAR(t(pyramid_of({clean, clean})), alone, 1e-9);
   // Sides of one law pool their variance.
   EXPECT_NEAR(t(pyramid_of({clean, clean}, {16, 32})), -3 / std::sqrt(.0625 / 2 + .0625 * 2), 1e-9);
@@ -112,14 +112,17 @@ TEST(NoisePyramid, HasTheVarianceOfEqualMeans) {
   // The brighter has far more, but smaller ones. Dark values of it are no skewness of the darker.
   EXPECT_NEAR(t(pyramid_of({with_rare(4), with_rare(100, 4)})), t_of(50 - 0.64), 1e-9);
   EXPECT_NEAR(t(pyramid_of({with_rare(18), with_rare(1, -50)})), t_of(50), 1e-9);
+  // In a wide block the other side's skewness counts by its part in the cell.
+  EXPECT_NEAR(pyramid_of({with_rare(18), with_rare(1)}).kept(dark, {3, 3, 1, 1}, 0).t(),
+              t_of(50 * (18 - 0.0625 / (2500.0 / 1024 / 16)) / 18), 1e-9);
   // As many in one element tell as little of others as one.
   PooledNoise many;
   many.add({.count = 18, .squares = 18 * 2500.0, .cubes = 18 * 125e3});
   for (int i = 0; i < 18; ++i) many.add_large(50, true);
   many.add_rare_element(50, 18);
-  NoisePyramid one_element = pyramid_of({clean, clean});
-  one_element.at(0, 0, 0, 0).merge(many);
-  EXPECT_NEAR(t(one_element), alone, 1e-9);
+  NoisePyramid one = pyramid_of({clean, clean});
+  one.at(0, 0, 0, 0).merge(many);
+  EXPECT_NEAR(t(one), alone, 1e-9);
   // Nor do octaves that only one side still tells apart.
   EXPECT_NEAR(t(pyramid_of({with_rare(40, 2), with_rare(1, 1e5)})), alone, 1e-9);
   // Values that are common in their elements tell no laws apart, and count with all others.
@@ -140,17 +143,17 @@ TEST(NoisePyramid, HasTheVarianceOfEqualMeans) {
   for (double& x : opposite) x = -x;
   CellNoise bright = dark;
   bright.effect = 3;
-  EXPECT_NEAR(pyramid_of({opposite, {}}, {16, 0}).kept(bright, pixel, 0).t(),
+  EXPECT_NEAR(pyramid_of({opposite, {}}, {16, 0}).kept(bright, place, 0).t(),
               -t(pyramid_of({rare, {}}, {16, 0})), 1e-9);
   // A cell beside noise of 10 is no clearer than unseen values of that size allow.
   CellNoise quiet = dark;
   quiet.weights = std::sqrt(8.0) / 10;
-  const ImageEffect kept = pyramid_of({clean, {}}, {16, 0}).kept(quiet, pixel, 0);
+  const ImageEffect kept = pyramid_of({clean, {}}, {16, 0}).kept(quiet, place, 0);
   EXPECT_NEAR(log_p_two_sided(student_t_tails(kept.t(), kept.degrees)),
               log_p_constant({0, -10, 10, 16}, {3, std::sqrt(5.0 / 16)}), 1e-9);
   // The brighter side misses the same. A brighter cell misses no bright values.
   EXPECT_NEAR(t(pyramid_of({rare, rare})), alone, 1e-9);
-  EXPECT_NEAR(pyramid_of({rare, clean}).kept(bright, pixel, 0).t(), -alone, 1e-9);
+  EXPECT_NEAR(pyramid_of({rare, clean}).kept(bright, place, 0).t(), -alone, 1e-9);
 }
 
 TEST(NoisePyramid, TakesACellsOwnThirdCumulant) {
