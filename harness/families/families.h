@@ -30,7 +30,7 @@ const Theta& theta_of_variance_slopes();
 /// Says which compared subject's sample has no spread, so that its error is unknown; "" if all
 /// have.
 std::string lack_of_spread(const Seen& seen);
-/// The cost of a primary.
+/// The mean cost of a primary.
 stats::Influence cost_of(const Seen& seen, std::size_t subject);
 /// The powers of a channel's values, as far as they are kept: a cost means nothing.
 stats::JointMoments powers_of_values(const ChannelData& data);
