@@ -5,7 +5,6 @@
 
 #include "harness/draws/sampler_setup.h"
 #include "harness/families/families.h"
-#include "harness/families/law.h"
 #include "harness/plan/outcome.h"
 #include "harness/run/evaluate.h"
 #include "stats/means/binomial.h"
@@ -26,9 +25,9 @@ std::string per_cent(double part) { return fmt::format("{:.3g} %", 100 * part); 
 Evidence integral(const Seen& seen) {
   const std::span<const std::uint64_t> counts = seen.data[0].cells;
   const DensityCells& cells = density_of(seen.question);
-  Evidence evidence =
-      from_probability({.successes = cells.in_cells(counts).back(), .trials = sum(counts)},
-                       cells.mass.total - seen.reference().value, cells.tolerance());
+  Evidence evidence = stats::probability_evidence(
+      {.successes = cells.in_cells(counts).back(), .trials = sum(counts)},
+      cells.mass.total - seen.reference().value, cells.tolerance());
   evidence.quantity = fmt::format(
       "total probability (density {:.10g} +- {:.1g}, plus draws without a point) less {:g}",
       cells.mass.total, cells.tolerance(), seen.reference().value);
@@ -43,7 +42,8 @@ Evidence inconsistency(const Seen& seen) {
   const std::uint64_t draws_made = sum(counts);
   const std::uint64_t inconsistent = draws_made - counts[0];
   const double claimed = seen.reference().value;
-  Evidence evidence = from_probability({.successes = inconsistent, .trials = draws_made}, -claimed);
+  Evidence evidence =
+      stats::probability_evidence({.successes = inconsistent, .trials = draws_made}, -claimed);
   evidence.quantity = "probability of an inconsistent draw";
   if (claimed != 0) evidence.quantity += fmt::format(", less {:g},", claimed);
   constexpr double considerable = 0.1;

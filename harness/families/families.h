@@ -3,11 +3,15 @@
 // The families offer these to the table of quantities and to each other. Each has one file, which
 // has Theta, questions, evidence and plans through this one.
 
+#include <cstdint>
 #include <string>
+#include <vector>
 
+#include "harness/draws/draw_cells.h"
 #include "harness/pilot/pilot.h"
 #include "harness/plan/outcome.h"
 #include "harness/theta/theta.h"
+#include "stats/laws/law_evidence.h"
 #include "stats/variances/influence.h"
 
 namespace assay::harness {
@@ -38,6 +42,16 @@ stats::JointMoments powers_of_values(const ChannelData& data);
 Constant truth_of(const Seen& seen, std::size_t subject);
 /// ", red" if the question has several channels.
 std::string channel_suffix(const Question& question, std::size_t channel);
+
+/// The cells of a sampler's declared density, of a claim about its draws.
+const DensityCells& density_of(const Question& question);
+/// A subject's points of a claim about its law.
+stats::Points points_of(const Seen& seen, std::size_t subject);
+/// The law that a claim about one sample names, or the sampler's density.
+stats::DeclaredLaw declared_law(const Question& question, std::size_t channel);
+/// Counts of one side's values in each cell. The last number counts draws without a point.
+std::vector<std::uint64_t> counts_in(const stats::SampledCells& cells, const Seen& seen,
+                                     std::size_t subject);
 
 /// A channel of one subject before the test.
 struct Known {

@@ -1,5 +1,3 @@
-#include "harness/families/law.h"
-
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -7,7 +5,6 @@
 #include <cmath>
 #include <functional>
 #include <limits>
-#include <numbers>
 #include <numeric>
 
 #include "harness/draws/sampler_setup.h"
@@ -19,144 +16,10 @@
 #include "stats/cells/chi_square_fit.h"
 #include "stats/cells/chi_square_two_sample.h"
 #include "stats/gates/assumption_gates.h"
-#include "stats/means/binomial.h"
 #include "stats/planning/power.h"
 
 namespace assay::harness {
 namespace {
-
-using stats::Interval;
-using stats::TestResult;
-
-constexpr const char* distance_of_laws = "largest distance between distribution functions";
-
-/// Says which part decides: the estimate may be another's.
-std::string decisive_part(const std::string& part, double difference) {
-  return fmt::format("{} decide: their shares are {:.4g} apart", part, difference);
-}
-
-/// Evidence from a sup distance that the law's table leaves uncertain by `error`.
-Evidence from_distance(const stats::OneSampleDistance& measured, double error) {
-  stats::OneSampleDistance least = measured;
-  stats::OneSampleDistance most = measured;
-  least.distance = std::max(0.0, measured.distance - error);
-  most.distance = std::min(1.0, measured.distance + error);
-  // Computed once: it is slow.
-  const TestResult at_none = stats::kolmogorov_smirnov(least);
-  const auto at = [least, most, at_none](double theta) {
-    if (theta <= 0) return at_none;
-    TestResult result = stats::ks_margin(least, theta);
-    result.log_p_lower = stats::ks_margin(most, theta).log_p_lower;
-    return result;
-  };
-  const auto interval = [least, most](double confidence) -> Interval {
-    return {stats::ks_interval(least, confidence).low, stats::ks_interval(most, confidence).high,
-            confidence};
-  };
-  return {.estimate = measured.distance,
-          .at = at,
-          .interval = interval,
-          .quantity = distance_of_laws,
-          .distance = true};
-}
-
-Evidence from_distance(std::span<const double> x, std::span<const double> y) {
-  const stats::TwoSampleDistance distance = stats::ks_distance(x, y);
-  const stats::TwoLawsTest at_none = stats::two_part_ks(x, y, distance);
-  const auto at = [distance, none = at_none.result](double theta) {
-    return theta <= 0 ? none : stats::ks_margin(distance, theta);
-  };
-  // The bound of a margin may reach 0 where the exact test rejects it. The interval is open there.
-  const auto interval = [distance, at](double confidence) {
-    stats::Interval found = stats::ks_interval(distance, confidence);
-    if (found.low == 0 && at(0).log_p_upper < std::log((1 - confidence) / 2))
-      found.low = std::numeric_limits<double>::min();
-    return found;
-  };
-  Evidence evidence{.estimate = distance.distance(),
-                    .at = at,
-                    .interval = interval,
-                    .quantity = distance_of_laws,
-                    .distance = true};
-  if (at_none.common && at_none.common->decides) {
-    const std::string of_value = decisive_part(
-        fmt::format("the values at {:.6g}", at_none.common->value), at_none.common->difference);
-    evidence.most_against = [of_value](double theta) { return theta <= 0 ? of_value : ""; };
-  }
-  return evidence;
-}
-
-stats::TwoValued no_point_or_point(const Points& points) {
-  return {.range = {0, 1}, .high = {.successes = points.missing(), .trials = points.draws}};
-}
-
-/// theta is the difference of the probabilities of no point.
-Evidence from_probabilities(const Points& x, const Points& y) {
-  const stats::TwoValued one = no_point_or_point(x);
-  const stats::TwoValued other = no_point_or_point(y);
-  const auto share = [](const Points& p) {
-    return static_cast<double>(p.missing()) / static_cast<double>(p.draws);
-  };
-  return {.estimate = share(x) - share(y),
-          .at =
-              [=](double theta) {
-                return stats::two_valued_contrast(one, other, {.scale = 1, .offset = theta});
-              },
-          .interval =
-              [=](double confidence) {
-                return stats::two_valued_difference_interval(one, other, confidence);
-              }};
-}
-
-// Bound on the rounding of ln p.
-constexpr double rounding_of_log_p = 1e-6;
-
-/// theta = the larger distance, of points or of the masses without one. Bonferroni rejects "at
-/// most" if either part does at half the level. Intersection of unions rejects "at least" if both
-/// do.
-Evidence larger_of(const Evidence& points, const Evidence& missing) {
-  const auto at = [points, missing](double theta) {
-    const TestResult one = points.at(theta);
-    const TestResult other = missing.at(theta);
-    TestResult result = other.log_p_upper < one.log_p_upper ? other : one;
-    result.log_p_upper = std::min(0.0, result.log_p_upper + std::numbers::ln2);
-    result.log_p_lower = std::max(one.log_p_lower, other.log_p_lower);
-    return result;
-  };
-  const auto interval = [points, missing](double confidence) -> Interval {
-    const double halved = 1 - (1 - confidence) / 2;
-    Interval both{points.interval(halved).low, points.interval(confidence).high, confidence};
-    // One test shows where the other interval cannot matter. To compute it takes some hundred.
-    if (missing.at(both.low).log_p_upper <= std::log(1 - halved) + rounding_of_log_p) {
-      both.low = std::max(both.low, missing.interval(halved).low);
-    }
-    if (missing.at(both.high).log_p_lower >= std::log((1 - confidence) / 2) - rounding_of_log_p) {
-      both.high = std::max(both.high, missing.interval(confidence).high);
-    }
-    return both;
-  };
-  return {
-      .estimate = std::max(points.estimate, missing.estimate),
-      .at = at,
-      .interval = interval,
-      .most_against = [points, missing](double theta) -> std::string {
-        const double of_masses = missing.at(theta).log_p_upper;
-        return of_masses < points.at(theta).log_p_upper
-                   ? decisive_part("the masses without a point", missing.estimate)
-                   : "";
-      },
-      .quantity =
-          "largest distance between distribution functions, or between the masses without a point",
-      .distance = true};
-}
-
-void require_points(const Points& points) {
-  if (points.sorted.empty()) {
-    throw std::domain_error("no draw yielded a point: there is nothing to compare");
-  }
-}
-
-constexpr const char* effect_over_cells = "effect size w over the cells";
 
 std::string range_text(const std::string& name, const std::vector<double>& borders,
                        std::size_t part) {
@@ -209,18 +72,9 @@ Evidence cells_against_density(const Seen& seen) {
   counts.error.push_back(density.mass.total_error);
   const stats::ChiSquareFit fit =
       stats::chi_square_fit(counts, {.probability_tolerance = density.tolerance()});
-  const auto at = [fit](double theta) {
-    return theta == 0 ? fit.test : stats::chi_square_fit_effect(fit, std::max(0.0, theta));
-  };
-  const auto interval = [fit](double confidence) {
-    return stats::chi_square_fit_interval(fit, confidence);
-  };
-  return {.estimate = fit.effect,
-          .at = at,
-          .interval = interval,
-          .most_against = always(worst_of(fit, density.cells)),
-          .quantity = effect_over_cells,
-          .distance = true};
+  Evidence evidence = stats::chi_square_evidence(fit);
+  evidence.most_against = always(worst_of(fit, density.cells));
+  return evidence;
 }
 
 /// Two samples against each other in the plan's cells. One more cell counts draws without a
@@ -230,28 +84,20 @@ Evidence cells_against_cells(const Seen& seen) {
   const stats::SampledCells& cells = *seen.data[0].sampled_cells;
   const stats::ChiSquareTwoSample fit = stats::chi_square_two_sample(
       {.x = counts_in(cells, seen, 0), .y = counts_in(cells, seen, 1)});
-  const auto at = [fit](double theta) {
-    return theta <= 0 ? fit.test : stats::chi_square_effect(fit.statistic, theta);
-  };
-  const auto interval = [fit](double confidence) {
-    return stats::chi_square_effect_interval(fit.statistic, confidence);
-  };
   const stats::PooledPair& worst =
       *std::ranges::max_element(fit.cells, {}, &stats::PooledPair::part);
   const Subject& first = seen.question.subjects[0];
   const auto place = [&](std::size_t cell) { return describe(cells, first, cell); };
-  return {.estimate = fit.statistic.effect(),
-          .at = at,
-          .interval = interval,
-          .most_against = always(fmt::format("farthest apart in {}, {} against {}",
-                                             pool_text(worst.members, place), worst.x, worst.y)),
-          .quantity = effect_over_cells,
-          .distance = true};
+  Evidence evidence = stats::chi_square_evidence(fit);
+  evidence.most_against = always(fmt::format("farthest apart in {}, {} against {}",
+                                             pool_text(worst.members, place), worst.x, worst.y));
+  return evidence;
 }
 
 Evidence by_distance(const Seen& seen) {
-  if (seen.question.of_two()) return points_against_points(points_of(seen, 0), points_of(seen, 1));
-  return points_against_law(points_of(seen, 0), declared_law(seen.question, seen.channel));
+  if (seen.question.of_two())
+    return stats::points_against_points(points_of(seen, 0), points_of(seen, 1));
+  return stats::points_against_law(points_of(seen, 0), declared_law(seen.question, seen.channel));
 }
 
 /// True if a sampler's draws are tested against its density in cells of all coordinates.
@@ -538,9 +384,9 @@ const DensityCells& density_of(const Question& question) {
   return dynamic_cast<const SamplerSetup&>(*question.subjects[0].setup).density_cells();
 }
 
-Points points_of(const Seen& seen, std::size_t subject) {
+stats::Points points_of(const Seen& seen, std::size_t subject) {
   const std::span<const double> values = seen.data[subject].values;
-  Points points{.sorted = {values.begin(), values.end()}, .draws = values.size()};
+  stats::Points points{.sorted = {values.begin(), values.end()}, .draws = values.size()};
   if (const auto none = no_point_of(seen.question.subjects[subject], seen.channel)) {
     points.of_a_sampler = true;
     std::erase(points.sorted, *none);
@@ -549,9 +395,9 @@ Points points_of(const Seen& seen, std::size_t subject) {
   return points;
 }
 
-DeclaredLaw declared_law(const Question& question, std::size_t channel) {
+stats::DeclaredLaw declared_law(const Question& question, std::size_t channel) {
   const auto* draws = dynamic_cast<const SamplerSetup*>(question.subjects[0].setup.get());
-  DeclaredLaw declared;
+  stats::DeclaredLaw declared;
   if (!question.law.name.empty()) {
     declared.law = law_cdf(question.law);
   } else {
@@ -564,25 +410,6 @@ DeclaredLaw declared_law(const Question& question, std::size_t channel) {
     declared.missing_error = draws->density_cells().tolerance();
   }
   return declared;
-}
-
-Evidence points_against_law(const Points& points, const DeclaredLaw& declared) {
-  require_points(points);
-  const std::vector<double> values = stats::probabilities(points.sorted, declared.law);
-  const Evidence rest = from_distance(
-      stats::ks_distance(points.sorted, stats::Probabilities{values}), declared.error);
-  if (declared.missing == 0 && points.missing() == 0) return rest;
-  const stats::Successes missing{.successes = points.missing(), .trials = points.draws};
-  const Evidence excess = from_probability(missing, -declared.missing, declared.missing_error);
-  return larger_of(rest, absolute(excess));
-}
-
-Evidence points_against_points(const Points& x, const Points& y) {
-  require_points(x);
-  require_points(y);
-  const Evidence rest = from_distance(x.sorted, y.sorted);
-  if (!x.of_a_sampler && !y.of_a_sampler) return rest;
-  return larger_of(rest, absolute(from_probabilities(x, y)));
 }
 
 std::vector<std::uint64_t> counts_in(const stats::SampledCells& cells, const Seen& seen,

@@ -45,12 +45,10 @@ Evidence evidence_of_means(const Seen& seen) {
   } else {
     theta.reference = seen.reference();
   }
-  return {.estimate = theta.estimate(),
-          .at = [=](double value) { return theta.at(value); },
-          .interval = [=](double confidence) { return theta.interval(confidence); },
-          .quantity = fmt::format("{}difference {}", theta.relative ? "relative " : "",
-                                  theta.y ? "of means" : "from the reference"),
-          .relative = theta.relative};
+  Evidence evidence = theta.evidence();
+  evidence.quantity = fmt::format("{}difference {}", theta.relative ? "relative " : "",
+                                  theta.y ? "of means" : "from the reference");
+  return evidence;
 }
 
 // A shift of so many standard errors moves a tail of one per cent by a third at most.

@@ -17,47 +17,27 @@ std::vector<double> sorted(std::span<const double> values, double factor) {
   return stats::sorted(std::move(copy));
 }
 
-double middle(const std::vector<double>& sorted, double probability) {
-  return sorted[stats::sample_quantile_rank(sorted.size(), probability)];
-}
-
-Evidence against_number(const Seen& seen, std::vector<double> values) {
-  const double probability = seen.question.test->claim.left.arguments[0];
-  const double null = seen.reference().value;
-  const bool relative = seen.relative();
-  const double unit = relative ? std::abs(null) : 1;
-  const auto at = [=](double theta) {
-    return stats::quantile_test(stats::count_around(values, null + theta * unit), probability);
-  };
-  const auto interval = [=](double confidence) {
-    return stats::map_ends(stats::quantile_interval(values, probability, confidence),
-                           [=](double value) { return (value - null) / unit; });
-  };
-  return {.estimate = (middle(values, probability) - null) / unit,
-          .at = at,
-          .interval = interval,
-          .quantity = relative ? "relative difference of the quantile from the reference"
-                               : "difference of the quantile from the reference",
-          .relative = relative};
-}
-
 /// Exact for every law.
 Evidence quantile(const Seen& seen) {
   const Question& question = seen.question;
-  std::vector<double> x = sorted(seen.data[0].values, 1);
-  if (!question.of_two()) return against_number(seen, std::move(x));
-  // The quantile of c y is c times that of y, c > 0.
-  const std::vector<double> y = sorted(seen.data[1].values, question.factor);
   const double probability = question.test->claim.left.arguments[0];
-  const double estimate = middle(x, probability) - middle(y, probability);
-  const auto at = [x, y, probability](double theta) {
-    return stats::quantile_compare(x, y, probability, theta);
-  };
-  const auto interval = [x, y, probability](double confidence) {
-    return stats::quantile_difference_interval(x, y, probability, confidence);
-  };
-  return {
-      .estimate = estimate, .at = at, .interval = interval, .quantity = "difference of quantiles"};
+  std::vector<double> x = sorted(seen.data[0].values, 1);
+  Evidence evidence;
+  if (question.of_two()) {
+    // The quantile of c y is c times that of y, c > 0.
+    std::vector<double> y = sorted(seen.data[1].values, question.factor);
+    evidence = stats::quantile_evidence(std::move(x), std::move(y), probability);
+    evidence.quantity = "difference of quantiles";
+    return evidence;
+  }
+  const double null = seen.reference().value;
+  const bool relative = seen.relative();
+  evidence =
+      stats::quantile_evidence(std::move(x), probability, null, relative ? std::abs(null) : 1);
+  evidence.quantity = relative ? "relative difference of the quantile from the reference"
+                               : "difference of the quantile from the reference";
+  evidence.relative = relative;
+  return evidence;
 }
 
 /// Deviation of one secondary, for planning.

@@ -201,11 +201,12 @@ class LogTheta : public Theta {
   }
 };
 
-/// The name of theta before its logarithm: "ratio of costs", "cost over the reference".
-std::string quantity_of(const Question& question) {
+/// Names theta before its logarithm: "ratio of costs", "cost over the reference".
+Evidence named(Evidence evidence, const Question& question) {
   const RatioWords& words = dynamic_cast<const LogTheta&>(*question.theta).words;
-  return question.of_two() ? fmt::format("ratio of {}", words.many)
-                           : fmt::format("{} over the reference", words.one);
+  evidence.quantity = question.of_two() ? fmt::format("ratio of {}", words.many)
+                                        : fmt::format("{} over the reference", words.one);
+  return evidence;
 }
 
 Evidence by_influence(const Seen& seen) {
@@ -215,13 +216,7 @@ Evidence by_influence(const Seen& seen) {
   for (std::size_t i = 0; i < seen.question.compared(); ++i) {
     ratio.sides.push_back(family.side(seen, i));
   }
-  const auto [estimate, error] = stats::log_ratio_estimate(ratio);
-  return {
-      .estimate = estimate,
-      .at = [=](double theta) { return stats::log_ratio_test(ratio, theta); },
-      .interval = [=](double confidence) { return stats::log_ratio_interval(ratio, confidence); },
-      .quantity = quantity_of(seen.question),
-      .exact = error == 0};
+  return named(stats::log_ratio_evidence(ratio), seen.question);
 }
 
 Method influence_row(bool (*answers)(const Question&), Keeps keeps) {
@@ -244,22 +239,10 @@ double null_of(const Seen& seen) {
 
 Evidence of_normal_values(const Seen& seen) {
   const bool two = seen.question.of_two();
-  const Moments x = seen.moments(0);
-  const Moments y = two ? seen.moments(1) : Moments{};
-  const double null = null_of(seen);
-  const auto at = [=](double theta) {
-    const double value = null * std::exp(theta);
-    return two ? stats::f_ratio(x, y, value) : stats::chi_square_variance(x, value);
-  };
-  const auto interval = [=](double confidence) {
-    return stats::map_ends(two ? stats::f_ratio_interval(x, y, confidence)
-                               : stats::chi_square_variance_interval(x, confidence),
-                           [=](double value) { return std::log(value / null); });
-  };
-  return {.estimate = std::log(x.variance() / (two ? y.variance() : 1) / null),
-          .at = at,
-          .interval = interval,
-          .quantity = quantity_of(seen.question)};
+  return named(
+      stats::log_variance_evidence(
+          seen.moments(0), two ? std::optional(seen.moments(1)) : std::nullopt, null_of(seen)),
+      seen.question);
 }
 
 /// True if the pilot leaves no doubt that F and chi-square keep their level: no excess kurtosis
@@ -423,10 +406,7 @@ Evidence evidence_of_replicates(const Seen& seen) {
                             .x = {.moments = logarithms(seen, 0), .range = {}},
                             .contrast = {.offset = std::log(null)}};
   if (question.of_two()) theta.y = stats::MeanSample{logarithms(seen, 1), {}};
-  return {.estimate = theta.estimate(),
-          .at = [=](double value) { return theta.at(value); },
-          .interval = [=](double confidence) { return theta.interval(confidence); },
-          .quantity = quantity_of(question)};
+  return named(theta.evidence(), question);
 }
 
 bool in_seconds(const Question& question) { return question.test->cost == CostKind::seconds; }

@@ -69,30 +69,9 @@ SlopeData points_of(const Seen& seen) {
 /// Theta is the exponent minus the claimed one. Biases and means are fitted as they are, variances
 /// and costs by their logarithms (stats/variances/slope.h). Costs that never vary are exact.
 Evidence slope(const Seen& seen) {
-  const SlopeData points = points_of(seen);
-  const double null = seen.reference().value;
-  constexpr const char* quantity = "difference from the claimed slope";
-  if (stats::is_exact(points)) {
-    const stats::ExactSlopes slopes = stats::exact_slopes(points);
-    const auto less = [=](double slope) { return stats::exact_difference(slope, null); };
-    return {.estimate = less(slopes.middle()),
-            .at = [=](double theta) { return stats::slope_test(slopes, null + theta); },
-            .interval =
-                [=](double confidence) {
-                  return stats::Interval{less(slopes.low), less(slopes.high), confidence};
-                },
-            .quantity = quantity};
-  }
-  const auto at = [=](double theta) { return stats::slope_test(points, null + theta); };
-  const auto interval = [=](double confidence) {
-    // The set takes each end at the whole level (stats/variances/slope.h).
-    const stats::Interval hull = stats::slope_set(points, (1 + confidence) / 2);
-    return stats::Interval{hull.low - null, hull.high - null, confidence};
-  };
-  return {.estimate = stats::slope_estimate(points).slope - null,
-          .at = at,
-          .interval = interval,
-          .quantity = quantity};
+  Evidence evidence = stats::slope_evidence(points_of(seen), seen.reference().value);
+  evidence.quantity = "difference from the claimed slope";
+  return evidence;
 }
 
 /// Gates of the points whose logarithms are fitted, on the skewness of their influence values.
@@ -117,13 +96,7 @@ std::vector<Gate> skewness_gates(const Seen& seen, double critical) {
 /// leaves no slope: to reject all others neither shows nor refutes a claim. Under a power law it is
 /// red with at most this probability.
 Gate power_law_gate(const Seen& seen, double level) {
-  const SlopeData points = points_of(seen);
-  double log_p = 0;
-  if (stats::is_exact(points)) {
-    if (!stats::exact_slopes(points).is_power_law()) log_p = std::log(0.0);
-  } else {
-    log_p = stats::slope_estimate(points).log_p_best;
-  }
+  const double log_p = stats::log_p_of_power_law(points_of(seen));
   const double limit = std::max(least_p_of_fit, level);
   return gate_of("p of a power law", std::exp(log_p), limit,
                  log_p <= std::log(limit) ? "red" : "green");

@@ -211,21 +211,7 @@ ChannelEvidence evidence_of_image_laws(const Seen& seen, const ImageTest& test) 
       .log_p = law.log_p, .winner = most, .groups = {most}, .tested = extent.elements()};
   outcome.seen = seen_text(law.most, question.subjects[0].estimator->name);
   outcome.z = std::move(law.z);
-  const stats::TestResult equal{
-      .statistic = law.most.z,
-      .distribution = {"permutation", {static_cast<double>(law.permutations)}},
-      .log_p_lower = 0,
-      .log_p_upper = law.log_p};
-  constexpr double unknown = std::numeric_limits<double>::infinity();
-  Evidence evidence{.estimate = unknown,
-                    .at = [equal](double) { return equal; },
-                    .interval =
-                        [=](double confidence) {
-                          return stats::Interval{-unknown, unknown, confidence};
-                        },
-                    .quantity = "difference of the laws",
-                    .distance = true};
-  return {std::move(evidence), std::move(outcome)};
+  return {stats::law_evidence(law), std::move(outcome)};
 }
 
 double share_of_distance(const Question& question) {
@@ -309,35 +295,16 @@ ChannelEvidence evidence_of_images(const Seen& seen, const ImageTest& test) {
     outcome.wanted = stats::deciding_replicates(images, margin, test.share.beta,
                                                 static_cast<double>(outcome.replicates));
   }
-  stats::TestResult equal{.statistic = family.winner.z,
-                          .distribution = {"image-family", {static_cast<double>(family.tested)}},
-                          .log_p_lower = 0,
-                          .log_p_upper = family.log_p};
-  // The distance decides where no place does, if it rests on many pixels.
-  if (images.share > 0 && family.log_p > std::log(test.share.alpha) &&
-      distance.elements >= stats::fewest_effective_observations) {
-    stats::TestResult by_distance = stats::theta_test(images, 0);
-    by_distance.log_p_lower = 0;
-    if (by_distance.log_p_upper < family.log_p) equal = by_distance;
-  }
-  Evidence evidence{
-      .estimate = images.estimate(),
-      .at =
-          [=](double theta) {
-            if (!(theta > 0)) return equal;
-            stats::TestResult result = stats::theta_test(images, theta);
-            // What exceeds a margin differs. A single reference's own noise is part of theta.
-            if (images.share > 0) {
-              result.log_p_upper = std::max(result.log_p_upper, equal.log_p_upper);
-            }
-            return result;
-          },
-      .interval = [=](double confidence) { return stats::theta_interval(images, confidence); },
-      .quantity = relative ? "relative root mean square difference of the images"
-                           : "root mean square difference of the images",
-      .relative = relative,
-      .distance = true,
-      .exact = images.exact()};
+  Evidence evidence =
+      stats::image_evidence(images,
+                            {.statistic = family.winner.z,
+                             .distribution = {"image-family", {static_cast<double>(family.tested)}},
+                             .log_p_lower = 0,
+                             .log_p_upper = family.log_p},
+                            test.share.alpha);
+  evidence.relative = relative;
+  evidence.quantity = relative ? "relative root mean square difference of the images"
+                               : "root mean square difference of the images";
   return {std::move(evidence), std::move(outcome)};
 }
 

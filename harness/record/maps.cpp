@@ -12,7 +12,7 @@
 #include "harness/base/numbers.h"
 #include "harness/draws/draw_cells.h"
 #include "harness/draws/sampler_setup.h"
-#include "harness/families/law.h"
+#include "harness/families/families.h"
 #include "harness/record/record_of.h"
 #include "stats/cells/chi_square_fit.h"
 #include "stats/images/image_moments.h"
@@ -205,8 +205,8 @@ Cells cells_of(const DrawnTest& test) {
 constexpr std::size_t curve_parts = 64;
 
 /// The band is Kolmogorov's: it leaves the law where its test refutes it.
-reports::EmpiricalLaw empirical_law(const Points& points, double confidence,
-                                    const std::optional<DeclaredLaw>& law) {
+reports::EmpiricalLaw empirical_law(const stats::Points& points, double confidence,
+                                    const std::optional<stats::DeclaredLaw>& law) {
   reports::EmpiricalLaw drawn{.confidence = confidence};
   const std::vector<double>& sorted = points.sorted;
   const std::uint64_t n = sorted.size();
@@ -346,12 +346,12 @@ void add_cells(const DrawnTest& drawn, reports::Test& test) {
 std::vector<reports::EmpiricalLaw> empirical_laws(const DrawnTest& test, std::size_t channel) {
   const Question& question = test.outcome.question;
   if (!question.is().of_a_law || test.outcome.plan.method.keeps != Keeps::values) return {};
-  std::optional<DeclaredLaw> law;
+  std::optional<stats::DeclaredLaw> law;
   if (!question.of_two()) law = declared_law(question, channel);
   const double confidence = 1 - test.outcome.share().alpha;
   const std::vector<ChannelData> data = data_of(test, channel);
   return mapped_indices(data.size(), [&](std::size_t subject) {
-    const Points points = points_of({question, channel, data}, subject);
+    const stats::Points points = points_of({question, channel, data}, subject);
     reports::EmpiricalLaw drawn = empirical_law(points, confidence, law);
     drawn.source = question.subjects[subject].estimator->listed;
     return drawn;

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 
 namespace assay::harness {
 namespace {
@@ -11,34 +10,6 @@ namespace {
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
 }  // namespace
-
-Evidence from_probability(const stats::Successes& seen, double offset, double error) {
-  const auto at = [=](double theta) { return stats::binomial_within(seen, theta - offset, error); };
-  const auto interval = [=](double confidence) -> stats::Interval {
-    const stats::Interval q = stats::clopper_pearson(seen, confidence);
-    return {q.low + offset - error, q.high + offset + error, confidence};
-  };
-  const auto share = static_cast<double>(seen.successes) / static_cast<double>(seen.trials);
-  return {.estimate = share + offset, .at = at, .interval = interval};
-}
-
-Evidence absolute(const Evidence& of_theta) {
-  const auto at = [at = of_theta.at](double theta) {
-    const stats::TestResult above = at(theta);
-    const stats::TestResult below = at(-theta);
-    stats::TestResult result = above;
-    result.log_p_upper =
-        std::min(0.0, std::numbers::ln2 + std::min(above.log_p_upper, below.log_p_lower));
-    result.log_p_lower = std::max(above.log_p_lower, below.log_p_upper);
-    return result;
-  };
-  const auto interval = [interval = of_theta.interval](double confidence) -> stats::Interval {
-    const stats::Interval of = interval(confidence);
-    return {std::max({0.0, of.low, -of.high}), std::max(std::abs(of.low), std::abs(of.high)),
-            confidence};
-  };
-  return {.estimate = std::abs(of_theta.estimate), .at = at, .interval = interval};
-}
 
 double Regions::claimed_edge() const {
   if (within()) return detect.value_or(0);

@@ -1,8 +1,7 @@
 #pragma once
 
-// Evidence about theta, the number that a claim is about, is a test of every value in both
-// directions, and an interval. From it come p-values of the claimed and of the forbidden region,
-// and from these alone the verdict.
+// From the evidence about theta, the number that a claim is about, come p-values of the claimed and
+// of the forbidden region, and from these alone the verdict.
 //
 //  `relation  claimed region C        forbidden region F
 //   ==        abs(theta) <= allow     abs(theta) >= detect     alarm
@@ -18,36 +17,13 @@
 
 #include "harness/question/question.h"
 #include "reports/record/record.h"
-#include "stats/means/binomial.h"
-#include "stats/tails/test_result.h"
+#include "stats/tails/evidence.h"
 
 namespace assay::harness {
 
-struct Evidence {
-  double estimate = 0;
-  /// Tests "theta is this value". log_p_upper is the p-value of "theta <= value", log_p_lower that
-  /// of "theta >= value".
-  std::function<stats::TestResult(double)> at;
-  /// Two-sided interval of theta.
-  std::function<stats::Interval(double)> interval;
-  /// The part of the data that speaks most against "theta <= value", in words. Unset if the data
-  /// have no parts.
-  std::function<std::string(double)> most_against = {};
-  std::string quantity;   ///< Name of theta.
-  bool relative = false;  ///< Shown in per cent.
-  bool distance = false;  ///< Theta cannot be negative: `==` has one direction.
-  bool exact = false;     ///< The estimate has no error, as with costs that never vary.
-};
+using stats::Evidence;
 
-/// Evidence about theta = q + offset, where q is the probability of a success. The offset may be
-/// off by `error`. Exact binomial tests at both ends of the error, and Clopper and Pearson's
-/// interval.
-Evidence from_probability(const stats::Successes& seen, double offset, double error = 0);
-
-/// Evidence about |theta|, a distance.
-Evidence absolute(const Evidence& of_theta);
-
-/// A part that is the same for every value.
+/// A part that is the same for every value (Evidence::most_against).
 inline std::function<std::string(double)> always(std::string part) {
   return [part = std::move(part)](double) { return part; };
 }

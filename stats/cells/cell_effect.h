@@ -10,6 +10,8 @@
 
 namespace assay::stats {
 
+inline constexpr const char* effect_over_cells = "effect size w over the cells";
+
 struct PooledCell {
   std::uint64_t observed = 0;
   double expected = 0;               // n p0.

@@ -179,4 +179,15 @@ Interval chi_square_fit_interval(const ChiSquareFit& fit, double confidence) {
   return effect_interval([&](double w) { return effect_tails(fit, cells, w); }, start, confidence);
 }
 
+Evidence chi_square_evidence(const ChiSquareFit& fit) {
+  return {.estimate = fit.effect,
+          .at =
+              [fit](double w) {
+                return w == 0 ? fit.test : chi_square_fit_effect(fit, std::max(0.0, w));
+              },
+          .interval = [fit](double confidence) { return chi_square_fit_interval(fit, confidence); },
+          .quantity = effect_over_cells,
+          .distance = true};
+}
+
 }  // namespace assay::stats

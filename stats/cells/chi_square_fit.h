@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "stats/cells/cell_effect.h"
-#include "stats/tails/test_result.h"
+#include "stats/tails/evidence.h"
 
 namespace assay::stats {
 
@@ -65,5 +65,8 @@ TestResult chi_square_fit_effect(const ChiSquareFit& fit, double null_effect);
 // Central interval of w by effect_interval(). Both ends are NaN if no w is
 // left.
 Interval chi_square_fit_interval(const ChiSquareFit& fit, double confidence);
+
+// Evidence about w; about w = 0 by chi_square_fit's own test.
+Evidence chi_square_evidence(const ChiSquareFit& fit);
 
 }  // namespace assay::stats

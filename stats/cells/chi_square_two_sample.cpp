@@ -146,4 +146,15 @@ SampledCells sampled_cells(std::vector<PlanePoint> points, CellNumbers numbers) 
   return cells;
 }
 
+Evidence chi_square_evidence(const ChiSquareTwoSample& fit) {
+  return {.estimate = fit.statistic.effect(),
+          .at = [fit](double w) { return w <= 0 ? fit.test : chi_square_effect(fit.statistic, w); },
+          .interval =
+              [statistic = fit.statistic](double confidence) {
+                return chi_square_effect_interval(statistic, confidence);
+              },
+          .quantity = effect_over_cells,
+          .distance = true};
+}
+
 }  // namespace assay::stats

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "stats/tails/test_result.h"
+#include "stats/tails/evidence.h"
 
 namespace assay::stats {
 
@@ -57,6 +57,9 @@ TestResult chi_square_effect(const ChiSquareStatistic& statistic, double null_ef
 
 // Central interval of w: effect_interval of cell_effect.h.
 Interval chi_square_effect_interval(const ChiSquareStatistic& statistic, double confidence);
+
+// Evidence about w; about w = 0 by chi_square_two_sample's own test.
+Evidence chi_square_evidence(const ChiSquareTwoSample& fit);
 
 // A value of two coordinates; of one coordinate the second is 0.
 struct PlanePoint {

@@ -11,6 +11,7 @@
 #include "stats/basics/check.h"
 #include "stats/basics/moments.h"
 #include "stats/basics/vector_copies.h"
+#include "stats/gates/assumption_gates.h"
 #include "stats/tails/tails.h"
 
 namespace assay::stats {
@@ -362,6 +363,27 @@ Interval theta_interval(const ThetaOfImages& theta, double confidence) {
       confidence);
   return {std::sqrt(std::max(0.0, squared.low)), std::sqrt(std::max(0.0, squared.high)),
           confidence};
+}
+
+Evidence image_evidence(const ThetaOfImages& theta, const TestResult& of_places, double alpha) {
+  TestResult equal = of_places;
+  if (theta.share > 0 && equal.log_p_upper > std::log(alpha) &&
+      theta.of_elements.elements >= fewest_effective_observations) {
+    TestResult by_distance = theta_test(theta, 0);
+    by_distance.log_p_lower = 0;
+    if (by_distance.log_p_upper < equal.log_p_upper) equal = by_distance;
+  }
+  const auto at = [=](double margin) {
+    if (!(margin > 0)) return equal;
+    TestResult result = theta_test(theta, margin);
+    if (theta.share > 0) result.log_p_upper = std::max(result.log_p_upper, equal.log_p_upper);
+    return result;
+  };
+  return {.estimate = theta.estimate(),
+          .at = at,
+          .interval = [=](double confidence) { return theta_interval(theta, confidence); },
+          .distance = true,
+          .exact = theta.exact()};
 }
 
 double deciding_replicates(const ThetaOfImages& theta, double margin, double beta,

@@ -7,7 +7,7 @@
 #include "stats/basics/for_each.h"
 #include "stats/images/image.h"
 #include "stats/images/image_moments.h"
-#include "stats/tails/test_result.h"
+#include "stats/tails/evidence.h"
 
 namespace assay::stats {
 
@@ -126,6 +126,11 @@ TestResult theta_test(const ThetaOfImages& theta, double margin);
 // Values of theta that theta_test does not reject, but for places at 0. They are found by the
 // square root's signed square.
 Interval theta_interval(const ThetaOfImages& theta, double confidence);
+
+// Evidence by both, and about theta = 0 by the test of a family of places. Where no place decides
+// at alpha, the distance does if it rests on many elements. What exceeds a margin differs, so
+// equality must be rejected too; but a single reference's own noise is part of theta.
+Evidence image_evidence(const ThetaOfImages& theta, const TestResult& of_places, double alpha);
 
 // Replicates at which theta would be excluded from `margin` on at beta, a million times as many at
 // most. It is 0 if the estimate is not below the margin. In pure noise f times the replicates

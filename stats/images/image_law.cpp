@@ -425,4 +425,20 @@ ImageLawTest image_law_test(const ImageStack& a, const ImageStack& b,
   return test;
 }
 
+Evidence law_evidence(const ImageLawTest& test) {
+  constexpr double unknown = std::numeric_limits<double>::infinity();
+  const TestResult equal{.statistic = test.most.z,
+                         .distribution = {"permutation", {static_cast<double>(test.permutations)}},
+                         .log_p_lower = 0,
+                         .log_p_upper = test.log_p};
+  return {.estimate = unknown,
+          .at = [equal](double) { return equal; },
+          .interval =
+              [](double confidence) {
+                return Interval{-unknown, unknown, confidence};
+              },
+          .quantity = "difference of the laws",
+          .distance = true};
+}
+
 }  // namespace assay::stats

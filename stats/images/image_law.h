@@ -7,6 +7,7 @@
 #include "stats/basics/for_each.h"
 #include "stats/images/image.h"
 #include "stats/images/image_family.h"
+#include "stats/tails/evidence.h"
 
 namespace assay::stats {
 
@@ -70,5 +71,8 @@ struct ImageLawOptions {
 // least_replicates images.
 ImageLawTest image_law_test(const ImageStack& a, const ImageStack& b,
                             const ImageLawOptions& options);
+
+// Evidence that the laws differ. Theta is 0 or not; it has no size.
+Evidence law_evidence(const ImageLawTest& test);
 
 }  // namespace assay::stats

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <iterator>
 #include <limits>
+#include <memory>
 #include <numbers>
 #include <numeric>
 #include <utility>
@@ -161,6 +162,37 @@ Interval quantile_difference_interval(std::span<const double> sorted_x,
     return halved_between(middle, outside, rejected).inside;
   };
   return {end(rejected_below, middle - reach), end(rejected_above, middle + reach), confidence};
+}
+
+Evidence quantile_evidence(std::vector<double> sorted, double probability, double null,
+                           double unit) {
+  const double middle = sorted[sample_quantile_rank(sorted.size(), probability)];
+  const auto values = std::make_shared<const std::vector<double>>(std::move(sorted));
+  return {.estimate = (middle - null) / unit,
+          .at =
+              [=](double theta) {
+                return quantile_test(count_around(*values, null + theta * unit), probability);
+              },
+          .interval =
+              [=](double confidence) {
+                return map_ends(quantile_interval(*values, probability, confidence),
+                                [=](double value) { return (value - null) / unit; });
+              }};
+}
+
+Evidence quantile_evidence(std::vector<double> sorted_x, std::vector<double> sorted_y,
+                           double probability) {
+  const auto x = std::make_shared<const std::vector<double>>(std::move(sorted_x));
+  const auto y = std::make_shared<const std::vector<double>>(std::move(sorted_y));
+  const auto middle = [&](const std::vector<double>& sorted) {
+    return sorted[sample_quantile_rank(sorted.size(), probability)];
+  };
+  return {.estimate = middle(*x) - middle(*y),
+          .at = [=](double theta) { return quantile_compare(*x, *y, probability, theta); },
+          .interval =
+              [=](double confidence) {
+                return quantile_difference_interval(*x, *y, probability, confidence);
+              }};
 }
 
 double quantile_standard_deviation(double probability, double density) {

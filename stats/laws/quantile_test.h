@@ -3,9 +3,10 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <vector>
 
 #include "stats/basics/moments.h"
-#include "stats/tails/test_result.h"
+#include "stats/tails/evidence.h"
 
 namespace assay::stats {
 
@@ -49,6 +50,13 @@ TestResult quantile_compare(std::span<const double> sorted_x, std::span<const do
 Interval quantile_difference_interval(std::span<const double> sorted_x,
                                       std::span<const double> sorted_y, double probability,
                                       double confidence);
+
+// Evidence about theta = (quantile - null) / unit, and about theta = Q(x) - Q(y). Values are
+// sorted.
+Evidence quantile_evidence(std::vector<double> sorted, double probability, double null,
+                           double unit);
+Evidence quantile_evidence(std::vector<double> sorted_x, std::vector<double> sorted_y,
+                           double probability);
 
 // Standard deviation of one observation in the normal limit of a sample quantile, sqrt(q (1 - q)) /
 // density (Mosteller 1946). Pass it to normal_sample_size to plan in units of the value. Throws

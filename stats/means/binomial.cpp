@@ -128,6 +128,16 @@ Interval clopper_pearson(Successes observed, double confidence) {
           all ? 1 : beta_quantile({Tail::upper, log_tail}, {k + 1, n - k}), confidence};
 }
 
+Evidence probability_evidence(const Successes& seen, double offset, double error) {
+  const auto at = [=](double theta) { return binomial_within(seen, theta - offset, error); };
+  const auto interval = [=](double confidence) -> Interval {
+    const Interval q = clopper_pearson(seen, confidence);
+    return {q.low + offset - error, q.high + offset + error, confidence};
+  };
+  const auto share = static_cast<double>(seen.successes) / static_cast<double>(seen.trials);
+  return {.estimate = share + offset, .at = at, .interval = interval};
+}
+
 TwoValued two_valued(const Moments& x, Range range) {
   check_range("two_valued", range);
   check::at_least({"two_valued", "count"}, x.count, 1);

@@ -4,7 +4,7 @@
 
 #include "stats/basics/moments.h"
 #include "stats/means/student_t.h"
-#include "stats/tails/test_result.h"
+#include "stats/tails/evidence.h"
 
 namespace assay::stats {
 
@@ -23,6 +23,10 @@ TestResult binomial_within(Successes seen, double q, double error);
 
 // Clopper & Pearson (1934): central interval of P(success), coverage at least `confidence`.
 Interval clopper_pearson(Successes observed, double confidence);
+
+// Evidence about theta = q + offset by these two, where q is the probability of a success. The
+// offset may be off by `error`.
+Evidence probability_evidence(const Successes& seen, double offset, double error = 0);
 
 // ---- Two values
 

@@ -155,4 +155,11 @@ Interval ThetaOfMeans::interval(double confidence) const {
   return welch_t_interval(moved, scaled, confidence);
 }
 
+Evidence ThetaOfMeans::evidence() const {
+  return {.estimate = estimate(),
+          .at = [theta = *this](double value) { return theta.at(value); },
+          .interval = [theta = *this](double confidence) { return theta.interval(confidence); },
+          .relative = relative};
+}
+
 }  // namespace assay::stats

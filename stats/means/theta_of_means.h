@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "stats/means/betting_mean.h"
+#include "stats/tails/evidence.h"
 
 namespace assay::stats {
 
@@ -47,6 +48,8 @@ struct ThetaOfMeans {
   // Null hypothesis: theta is this value. Throws as the test does.
   TestResult at(double theta) const;
   Interval interval(double confidence) const;
+  // All three, of a copy.
+  Evidence evidence() const;
 
  private:
   double unit() const;

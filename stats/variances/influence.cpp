@@ -232,4 +232,12 @@ Interval log_ratio_interval(const LogRatio& ratio, double confidence) {
                                {.estimate = estimate, .step = error}, confidence);
 }
 
+Evidence log_ratio_evidence(const LogRatio& ratio) {
+  const auto [estimate, error] = log_ratio_estimate(ratio);
+  return {.estimate = estimate,
+          .at = [=](double theta) { return log_ratio_test(ratio, theta); },
+          .interval = [=](double confidence) { return log_ratio_interval(ratio, confidence); },
+          .exact = error == 0};
+}
+
 }  // namespace assay::stats

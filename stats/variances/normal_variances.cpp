@@ -1,6 +1,7 @@
 #include "stats/variances/normal_variances.h"
 
 #include <cmath>
+#include <string>
 
 #include "stats/basics/check.h"
 #include "stats/tails/tails.h"
@@ -61,6 +62,21 @@ Interval f_ratio_interval(const Moments& x, const Moments& y, double confidence)
   const double log_tail = std::log((1 - confidence) / 2);
   return {ratio / f_quantile({Tail::upper, log_tail}, degrees),
           ratio / f_quantile({Tail::lower, log_tail}, degrees), confidence};
+}
+
+Evidence log_variance_evidence(const Moments& x, const std::optional<Moments>& y, double null) {
+  const auto at = [=](double theta) {
+    const double value = null * std::exp(theta);
+    return y ? f_ratio(x, *y, value) : chi_square_variance(x, value);
+  };
+  const auto interval = [=](double confidence) {
+    return map_ends(
+        y ? f_ratio_interval(x, *y, confidence) : chi_square_variance_interval(x, confidence),
+        [=](double value) { return std::log(value / null); });
+  };
+  return {.estimate = std::log(x.variance() / (y ? y->variance() : 1) / null),
+          .at = at,
+          .interval = interval};
 }
 
 }  // namespace assay::stats

@@ -1,7 +1,9 @@
 #pragma once
 
+#include <optional>
+
 #include "stats/basics/moments.h"
-#include "stats/tails/test_result.h"
+#include "stats/tails/evidence.h"
 
 namespace assay::stats {
 
@@ -21,5 +23,8 @@ TestResult f_ratio(const Moments& x, const Moments& y, double null_ratio);
 
 // Central interval of Var x / Var y.
 Interval f_ratio_interval(const Moments& x, const Moments& y, double confidence);
+
+// Evidence about theta = ln(Var x / null), or about ln(Var x / Var y / null), by these tests.
+Evidence log_variance_evidence(const Moments& x, const std::optional<Moments>& y, double null);
 
 }  // namespace assay::stats

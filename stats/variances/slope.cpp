@@ -169,6 +169,39 @@ double degrees_of(const SlopeData& data) { return static_cast<double>(data.point
 
 double log_p(double misfit, double degrees) { return chi_square_tails(misfit, degrees).upper; }
 
+/// The range of slopes between neighbours.
+struct ExactSlopes {
+  double low = infinity;
+  double high = -infinity;
+
+  double middle() const { return (low + high) / 2; }
+};
+
+bool is_exact(const SlopeData& data) {
+  return std::ranges::all_of(data.points,
+                             [](const SlopePoint& point) { return point.standard_error == 0; });
+}
+
+ExactSlopes exact_slopes(const SlopeData& data) {
+  ExactSlopes slopes;
+  for (std::size_t i = 1; i < data.points.size(); ++i) {
+    const SlopePoint& a = data.points[i - 1];
+    const SlopePoint& b = data.points[i];
+    const double slope = (b.estimate - a.estimate) / std::log(b.size / a.size);
+    slopes.low = std::min(slopes.low, slope);
+    slopes.high = std::max(slopes.high, slope);
+  }
+  return slopes;
+}
+
+TestResult exact_test(const ExactSlopes& slopes, double null_slope) {
+  constexpr double impossible = std::numeric_limits<double>::lowest();
+  TestResult result{.statistic = slopes.middle() - null_slope, .distribution = {"bound", {}}};
+  if (slopes.high > null_slope + exact_tolerance) result.log_p_upper = impossible;
+  if (slopes.low < null_slope - exact_tolerance) result.log_p_lower = impossible;
+  return result;
+}
+
 }  // namespace
 
 TestResult slope_test(const SlopeData& unordered, double null_slope) {
@@ -218,36 +251,32 @@ SlopeEstimate slope_estimate(const SlopeData& unordered) {
   return estimate;
 }
 
-bool ExactSlopes::is_power_law() const { return !(high - low > 2 * exact_tolerance); }
-
-double exact_difference(double slope, double null_slope) {
-  const double difference = slope - null_slope;
-  return std::abs(difference) <= exact_tolerance ? 0 : difference;
+double log_p_of_power_law(const SlopeData& data) {
+  if (!is_exact(data)) return slope_estimate(data).log_p_best;
+  const ExactSlopes slopes = exact_slopes(data);
+  return slopes.high - slopes.low > 2 * exact_tolerance ? -infinity : 0;
 }
 
-bool is_exact(const SlopeData& data) {
-  return std::ranges::all_of(data.points,
-                             [](const SlopePoint& point) { return point.standard_error == 0; });
-}
-
-ExactSlopes exact_slopes(const SlopeData& data) {
-  ExactSlopes slopes{.low = infinity, .high = -infinity};
-  for (std::size_t i = 1; i < data.points.size(); ++i) {
-    const SlopePoint& a = data.points[i - 1];
-    const SlopePoint& b = data.points[i];
-    const double slope = (b.estimate - a.estimate) / std::log(b.size / a.size);
-    slopes.low = std::min(slopes.low, slope);
-    slopes.high = std::max(slopes.high, slope);
+Evidence slope_evidence(const SlopeData& data, double null_slope) {
+  if (is_exact(data)) {
+    const ExactSlopes slopes = exact_slopes(data);
+    const auto less = [=](double slope) {
+      const double difference = slope - null_slope;
+      return std::abs(difference) <= exact_tolerance ? 0 : difference;
+    };
+    return {.estimate = less(slopes.middle()),
+            .at = [=](double theta) { return exact_test(slopes, null_slope + theta); },
+            .interval = [=](double confidence) -> Interval {
+              return {less(slopes.low), less(slopes.high), confidence};
+            }};
   }
-  return slopes;
-}
-
-TestResult slope_test(const ExactSlopes& slopes, double null_slope) {
-  constexpr double impossible = std::numeric_limits<double>::lowest();
-  TestResult result{.statistic = slopes.middle() - null_slope, .distribution = {"bound", {}}};
-  if (slopes.high > null_slope + exact_tolerance) result.log_p_upper = impossible;
-  if (slopes.low < null_slope - exact_tolerance) result.log_p_lower = impossible;
-  return result;
+  return {.estimate = slope_estimate(data).slope - null_slope,
+          .at = [=](double theta) { return slope_test(data, null_slope + theta); },
+          .interval = [=](double confidence) -> Interval {
+            // The set takes each end at the whole level.
+            const Interval hull = slope_set(data, (1 + confidence) / 2);
+            return {hull.low - null_slope, hull.high - null_slope, confidence};
+          }};
 }
 
 double slope_power(const SlopeData& expected, double null_slope, double alpha) {

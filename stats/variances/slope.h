@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "stats/planning/power.h"
-#include "stats/tails/test_result.h"
+#include "stats/tails/evidence.h"
 
 namespace assay::stats {
 
@@ -61,22 +61,14 @@ struct SlopeEstimate {
 };
 SlopeEstimate slope_estimate(const SlopeData& data);
 
-// Points without error, such as costs that never vary: the range of slopes between neighbours, in
-// the order given. Slopes that differ by 1e-12, the rounding of quotients of logarithms of whole
-// numbers, are equal.
-struct ExactSlopes {
-  double low = 0;
-  double high = 0;
+// ln p of the slope that fits best. Of points without error, such as costs that never vary, it is
+// 0, or minus infinity where the slopes between neighbours differ by more than rounding.
+double log_p_of_power_law(const SlopeData& data);
 
-  double middle() const { return (low + high) / 2; }
-  bool is_power_law() const;
-};
-bool is_exact(const SlopeData& data);
-ExactSlopes exact_slopes(const SlopeData& data);
-// The slope less the null value; 0 within rounding.
-double exact_difference(double slope, double null_slope);
-// Null hypothesis: slope = null. The law is "bound", and p is 0 or 1.
-TestResult slope_test(const ExactSlopes& slopes, double null_slope);
+// Evidence about theta, the slope less the null value. Points without error have the range of
+// slopes between neighbours, in the order given; p is 0 or 1 (law "bound"). Slopes that differ by
+// 1e-12, the rounding of quotients of logarithms of whole numbers, are equal.
+Evidence slope_evidence(const SlopeData& data, double null_slope);
 
 // Power of the equality test of null_slope at alpha when the expectations of the points are
 // data.points. Noncentral chi-square with ncp = Q(null_slope).

@@ -17,7 +17,6 @@
 
 #include "harness/draws/sampler_setup.h"
 #include "harness/families/families.h"
-#include "harness/families/law.h"
 #include "harness/record/record_of.h"
 #include "harness/run/planned_run.h"
 #include "harness/sampling/executor.h"

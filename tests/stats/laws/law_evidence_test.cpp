@@ -1,10 +1,10 @@
-#include "harness/families/law.h"
+#include "stats/laws/law_evidence.h"
 
 #include "stats/means/binomial.h"
 #include "tests/philox.h"
 #include "tests/prelude.h"
 
-namespace assay::harness {
+namespace assay::stats {
 namespace {
 
 Points uniform_points(std::uint64_t draws, std::uint64_t missing, tests::Philox& random) {
@@ -58,9 +58,9 @@ TEST(LawEvidence, SaysOfWhichPartThePIsAtTheMarginThatIsTested) {
 TEST(LawEvidence, PointsHaveTheWholeLevelWhereNoMassIsMissing) {
   tests::Philox random(1);
   const Points points = uniform_points(1000, 0, random);
-  const auto distance = stats::ks_distance(points.sorted, uniform_law(0).law);
+  const auto distance = ks_distance(points.sorted, uniform_law(0).law);
   EXPECT_EQ(points_against_law(points, uniform_law(0)).at(0).log_p_upper,
-            stats::kolmogorov_smirnov(distance).log_p_upper);
+            kolmogorov_smirnov(distance).log_p_upper);
 }
 
 // The masses decide neither end, the upper one, both.
@@ -71,14 +71,14 @@ TEST(LawEvidence, AnIntervalReachesAsFarAsThatOfEitherPart) {
   const Points whole = uniform_points(3000, 0, random);
   for (const std::uint64_t missing : {0u, 150u, 1500u}) {
     const Points points = uniform_points(3000, missing, random);
-    const auto distance = stats::ks_distance(points.sorted, whole.sorted);
-    const stats::TwoValued one{.range = {0, 1}, .high = {.successes = missing, .trials = 3000}};
-    const stats::TwoValued other{.range = {0, 1}, .high = {.successes = 0, .trials = 3000}};
-    const auto low = stats::two_valued_difference_interval(one, other, halved).low;
-    const auto high = stats::two_valued_difference_interval(one, other, confidence).high;
-    const stats::Interval found = points_against_points(points, whole).interval(confidence);
-    EXPECT_EQ(found.low, std::max(stats::ks_interval(distance, halved).low, low)) << missing;
-    EXPECT_EQ(found.high, std::max(stats::ks_interval(distance, confidence).high, high)) << missing;
+    const auto distance = ks_distance(points.sorted, whole.sorted);
+    const TwoValued one{.range = {0, 1}, .high = {.successes = missing, .trials = 3000}};
+    const TwoValued other{.range = {0, 1}, .high = {.successes = 0, .trials = 3000}};
+    const auto low = two_valued_difference_interval(one, other, halved).low;
+    const auto high = two_valued_difference_interval(one, other, confidence).high;
+    const Interval found = points_against_points(points, whole).interval(confidence);
+    EXPECT_EQ(found.low, std::max(ks_interval(distance, halved).low, low)) << missing;
+    EXPECT_EQ(found.high, std::max(ks_interval(distance, confidence).high, high)) << missing;
   }
 }
 
@@ -106,7 +106,7 @@ TEST(LawEvidence, IntervalHoldsTheLargerOfBothDistances) {
   const Points y = uniform_points(20000, 400, random);
   const Evidence evidence = points_against_points(x, y);
   EXPECT_NEAR(evidence.estimate, 0.08, 1e-12);
-  const stats::Interval interval = evidence.interval(0.99);
+  const Interval interval = evidence.interval(0.99);
   EXPECT_LT(interval.low, 0.08);
   EXPECT_GT(interval.low, 0.06);
   EXPECT_GT(interval.high, 0.08);
@@ -142,4 +142,4 @@ TEST(LawEvidence, WithoutAPointThereIsNothingToTest) {
 }
 
 }  // namespace
-}  // namespace assay::harness
+}  // namespace assay::stats
