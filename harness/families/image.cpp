@@ -154,7 +154,7 @@ class ImageTheta : public Theta {
       : Theta(traits, {row}) {}
 
   const Theta* of_images() const override { return this; }
-  const Theta* of_pairs() const override;
+  const Theta* of_pairs(const Question& question) const override;
   void check(const Question& question) const override {
     require_one_size(question);
     const TestEntry& test = *question.test;
@@ -247,10 +247,14 @@ class ImageTheta : public Theta {
     if (fewest >= stats::least_replicates) return "";
     return fmt::format(
         "{0} images are too few: each pixel's variance comes from them alone, and {1} are needed "
-        "to tell one pixel of {2} from its reference; take {1} `secondaries` or more, or give a "
-        "larger `budget`, which pays `primaries` for every pixel and component, or fewer "
-        "`primaries`",
-        fewest, stats::least_replicates, question.subjects[0].channels.size());
+        "to tell one pixel of {2} from its reference; {3}",
+        fewest, stats::least_replicates, question.subjects[0].channels.size(),
+        question.test->budget
+            ? "give a larger `budget`, which pays `primaries` for every pixel and component, or "
+              "fewer `primaries`"
+            : fmt::format(fmt::runtime(question.test->secondaries ? "take {} `secondaries` or more"
+                                                                  : "give {} or more"),
+                          stats::least_replicates));
   }
 
   ChannelEvidence evidence(const DrawnTest& test, const Seen& seen) const override {
@@ -304,7 +308,7 @@ class ImageLawTheta final : public ImageTheta {
                    {"permutation", "permutation of labels: laws of two images", any_question,
                     Keeps::images, nullptr, exact_at_any_size}) {}
 
-  const Theta* of_pairs() const override { return nullptr; }
+  const Theta* of_pairs(const Question&) const override { return nullptr; }
   void check(const Question& question) const override {
     if (!question.of_two()) {
       refuse(place_of(question),
@@ -333,7 +337,10 @@ class ImageLawTheta final : public ImageTheta {
   }
 };
 
-const Theta* ImageTheta::of_pairs() const { return &one<PairedImageTheta>(); }
+const Theta* ImageTheta::of_pairs(const Question& question) const {
+  const bool of_bias = question.test->claim.left.row->relative_to_0;
+  return question.of_two() && !of_bias ? &one<PairedImageTheta>() : nullptr;
+}
 
 }  // namespace
 

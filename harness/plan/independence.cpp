@@ -125,7 +125,7 @@ Reason repeated(const Rows& rows, const stats::RepeatedRun& again) {
       question.test->claim.left.where,
       "`{}` and `{}` are not independent samples: {}; give every run of either side its own seed{}",
       first.estimator->name, second.estimator->name, why,
-      question.theta->of_pairs() == nullptr
+      question.theta->of_pairs(question) == nullptr
           ? ""
           : ", or compare pairs of one seed with " + written_key(*question.test, "paired", "true"));
 }

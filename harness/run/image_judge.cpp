@@ -79,7 +79,7 @@ std::string mend_of(const DrawnTest& test, bool across) {
     return fmt::format("give each {} a seed of its own, and check that all its bits are used",
                        question.is().of_pairs ? "pair" : "image");
   }
-  const bool pairs = question.theta->of_pairs() != nullptr;
+  const bool pairs = question.theta->of_pairs(question) != nullptr;
   return "give one side other seeds" + (pairs ? ", or test their differences with " +
                                                     written_key(*question.test, "paired", "true")
                                               : "");

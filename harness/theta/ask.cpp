@@ -155,9 +155,8 @@ void ask_of_images(Question& question) {
 }
 
 void ask_of_pairs(Question& question) {
-  const Theta* const theta = question.theta->of_pairs();
-  const bool of_bias = question.test->claim.left.row->relative_to_0;
-  if (theta == nullptr || !question.of_two() || of_bias) {
+  const Theta* const theta = question.theta->of_pairs(question);
+  if (theta == nullptr) {
     refuse(question.test->place_of("paired"),
            "`paired` is only for the means of two images, as in `mean(new) == mean(old)`; leave it "
            "out");

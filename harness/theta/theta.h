@@ -106,7 +106,7 @@ class Theta {
   virtual const Theta* of_images() const { return nullptr; }
   /// The family for differences of observations that share their random numbers; null if there is
   /// no method for them.
-  virtual const Theta* of_pairs() const { return nullptr; }
+  virtual const Theta* of_pairs(const Question&) const { return nullptr; }
   /// Throws InputError for a claim without a method.
   virtual void check(const Question&) const {}
   /// Throws InputError if the margin has no meaning here.
