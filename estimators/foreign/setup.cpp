@@ -413,7 +413,11 @@ std::shared_ptr<const Setup> setup_of(std::shared_ptr<Children> children) {
        .nature = hello.nature});
 }
 
-std::string mend_of_program(const std::string& program) {
+std::string mend_of_program(const std::string& program, std::errc why) {
+  if (why == std::errc::permission_denied) return "; give it the right: `chmod +x " + program + "`";
+  if (why == std::errc::executable_format_error) {
+    return "; a script begins with `#!` and its interpreter, as `#!/usr/bin/env python3`";
+  }
   const std::vector<std::string_view> words = words_of(program);
   if (words.size() > 1) {
     return "; put commas between the words: `[" + listed({words.begin(), words.end()}) + "]`";
@@ -434,8 +438,9 @@ std::shared_ptr<const Setup> start(Terms terms, const Parameters& parameters,
   } catch (const Refused& refusal) {
     parameters.refuse(name, std::string("starts no estimator: ") + refusal.what());
   } catch (const std::system_error& failure) {
-    parameters.refuse(name, "names the program `" + program + "`, which cannot be started: " +
-                                failure.code().message() + mend_of_program(program));
+    parameters.refuse(name, "names the program `" + program +
+                                "`, which cannot be started: " + failure.code().message() +
+                                mend_of_program(program, std::errc(failure.code().value())));
   }
 }
 

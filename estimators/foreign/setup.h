@@ -16,7 +16,7 @@ namespace assay::foreign {
 std::shared_ptr<const Setup> setup_of(std::shared_ptr<Children> children);
 
 /// Advice on a program that cannot be started: "; the path starts at the suite's folder".
-std::string mend_of_program(const std::string& program);
+std::string mend_of_program(const std::string& program, std::errc why = {});
 
 /// Starts the program. InputError at the parameter `name`, whose value says which program it is,
 /// where it cannot be started or refuses; NoAnswer where it ends, or says what is no hello.

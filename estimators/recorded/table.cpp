@@ -247,6 +247,10 @@ std::string no_text(std::string_view beginning, const std::string& file) {
          python_quoted(to_paste(file)) + "))`";
 }
 
+constexpr const char* missing_by_chance =
+    "; leave its row out if it is missing by chance, or write `nan` in a column that no claim "
+    "reads";
+
 constexpr const char* mend_of_comma =
     ": write `.` for it, and no comma between thousands; if these are columns, name them in a "
     "first "
@@ -421,7 +425,7 @@ class Reader {
 
   double number(const Field& field) const {
     if (field.text.empty()) {
-      refuse(field.column, "a number is missing; write `nan` if there is none");
+      refuse(field.column, std::string("a number is missing") + missing_by_chance);
     }
     const bool is_fraction = separator_ == ',' && field.text.size() > 1 && field.text[0] == '0' &&
                              '0' <= field.text[1] && field.text[1] <= '9';
@@ -435,7 +439,7 @@ class Reader {
       refuse(field.column, text + " is beyond what a double can hold; write `inf` or 0 if meant");
     }
     if (is_missing(field.text)) {
-      refuse(field.column, text + " is not a number; write `nan` if there is none");
+      refuse(field.column, text + " is not a number" + missing_by_chance);
     }
     refuse(field.column,
            text +

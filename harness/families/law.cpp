@@ -47,20 +47,24 @@ std::string pool_text(const std::vector<std::size_t>& members,
                      describe(members.front()));
 }
 
-std::string worst_of(const stats::ChiSquareFit& fit, const DrawCells& cells) {
+std::string worst_of(const stats::ChiSquareFit& fit, const DensityCells& density) {
   const auto part = [](const stats::PooledCell& cell) {
     const double difference = static_cast<double>(cell.observed) - cell.expected;
     return difference * difference / cell.expected;
   };
   const auto worst = std::ranges::max_element(fit.cells, {}, part);
-  const auto describe = [&](std::size_t cell) { return cells.describe(cell); };
+  const auto describe = [&](std::size_t cell) { return density.cells.describe(cell); };
   std::string text;
   if (fit.impossible > 0)
     text =
         fmt::format("{} draws that the density rules out (it is 0 there, or they have no point); ",
                     fit.impossible);
-  return text + fmt::format("farthest off in {}, {} draws where {:.4g} are expected",
-                            pool_text(worst->members, describe), worst->observed, worst->expected);
+  const bool of_integral = worst->members.back() + 1 == density.cells.size();
+  return text + fmt::format("farthest off in {}, {} draws where {:.4g} are expected{}",
+                            pool_text(worst->members, describe), worst->observed, worst->expected,
+                            of_integral ? fmt::format(", as the density integrates to {:.4g}",
+                                                      density.mass.total)
+                                        : "");
 }
 
 Evidence cells_against_density(const Seen& seen) {
@@ -73,7 +77,7 @@ Evidence cells_against_density(const Seen& seen) {
   const stats::ChiSquareFit fit =
       stats::chi_square_fit(counts, {.probability_tolerance = density.tolerance()});
   Evidence evidence = stats::chi_square_evidence(fit);
-  evidence.most_against = always(worst_of(fit, density.cells));
+  evidence.most_against = always(worst_of(fit, density));
   return evidence;
 }
 

@@ -271,7 +271,7 @@ void add_image(const DrawnTest& drawn, reports::Test& test) {
                         .estimate = number(effect->estimate / unit),
                         .low = number(effect->interval.low / unit),
                         .high = number(effect->interval.high / unit),
-                        .confidence = stats::confidence_at_place,
+                        .confidence = effect->interval.confidence,
                         .relative = relative};
     if (outcome.verdict == reports::Verdict::fail) {
       test.image->winner.others = others_at(drawn, *effect);

@@ -202,7 +202,6 @@ void note_sizes(TestOutcome& outcome, const DrawnTest& test) {
     const Sized sized{outcome, full_size(outcome), observed};
     const bool equivalence = channel.regions.within();
     if (!equivalence) channel.detectable = detectable_effect(sized);
-    channel.finds_nothing = !channel.detectable && theta.finds_nothing(sized);
     if (!equivalence && !channel.regions.detect) continue;
     const auto power = theta.power(sized, equivalence ? 0 : *channel.regions.detect);
     if (power) outcome.power = std::min(*power, outcome.power.value_or(1));
@@ -228,6 +227,10 @@ ChannelOutcome channel_outcome(const DrawnTest& test, const Seen& seen) {
           .at_null = at_null,
           .evidence = std::move(found.evidence),
           .decision = decision,
+          .finds_nothing = !regions.has_forbidden() &&
+                           theta.finds_nothing({test.outcome,
+                                                {test.outcome.share(), test.outcome.secondaries()},
+                                                theta.observed(seen, regions)}),
           .reference = theta.marked(seen),
           .image = std::move(found.image)};
 }
@@ -306,11 +309,12 @@ bool passes_without_fit(const TestOutcome& outcome) {
          outcome.plan.regions[0].has_forbidden() && !red_gates(outcome.gates).empty();
 }
 
-/// Says what the observations exclude nothing of on the sides that the claim bounds: it passes by
-/// not failing, which then says nothing. Other intervals have ends, and cost time.
+/// Says why the test passes by not failing, which says nothing: it finds no theta that is possible,
+/// or excludes none on the sides that the claim bounds. Other intervals have ends, and cost time.
 std::string cannot_fail(const TestOutcome& outcome) {
-  if (!outcome.question.is().may_be_unbounded) return "";
   for (ChannelOutcome channel : outcome.channels) {
+    if (channel.finds_nothing) return "possible mean";
+    if (!outcome.question.is().may_be_unbounded) continue;
     const Regions& regions = channel.regions;
     channel.effect = effect_of(outcome, channel);
     std::string what = outcome.question.theta->not_excluded(channel);

@@ -154,17 +154,17 @@ std::optional<PlaceEffect> effect_at_place(const DrawnTest& test) {
     const double difference = mean_over(test, 0, elements, {}) - base;
     return PlaceEffect{difference, {difference, difference, 1}, base, std::move(elements)};
   }
-  const double log_level =
-      stats::unadjusted(std::log(1 - stats::confidence_at_place), winner.group);
+  // At a larger level than usual a fail would meet an interval that holds 0.
+  const double error = std::max(1 - stats::confidence_at_place, outcome.place.share.alpha);
+  const double log_level = stats::unadjusted(std::log(error), winner.group);
   const double half = effect.standard_error *
                       stats::student_t_quantile({stats::Tail::upper, log_level - std::numbers::ln2},
                                                 effect.degrees);
   const double base = other_mean(test, elements, family.weights);
-  return PlaceEffect{
-      .estimate = effect.estimate,
-      .interval = {effect.estimate - half, effect.estimate + half, stats::confidence_at_place},
-      .other = base,
-      .elements = std::move(elements)};
+  return PlaceEffect{.estimate = effect.estimate,
+                     .interval = {effect.estimate - half, effect.estimate + half, 1 - error},
+                     .other = base,
+                     .elements = std::move(elements)};
 }
 
 std::string others_at(const DrawnTest& test, const PlaceEffect& place) {

@@ -94,12 +94,6 @@ std::string passed_alarm(const TestOutcome& outcome, const ChannelOutcome& chann
   if (channel.evidence.exact) return "as claimed: values that never vary need no test";
   if (!channel.regions.has_forbidden()) {
     const std::string text = no_evidence(channel);
-    if (channel.finds_nothing) {
-      return fmt::format(
-          "{}, nor could there be: {} observations are too few to find any difference that the "
-          "range allows with probability {:g}",
-          text, outcome.secondaries(), 1 - outcome.place.share.beta);
-    }
     if (const std::string all = outcome.question.theta->not_excluded(channel); !all.empty()) {
       return fmt::format("{}; but {}", text, excludes_no(all, outcome).text);
     }

@@ -331,7 +331,9 @@ EstimatorEntry parse_estimator_option(const std::string& text) {
   for (std::size_t i = 1; i < pieces.size(); ++i) {
     const auto sides = cut(pieces[i], '=');
     if (!sides) {
-      refuse(where, "`{}` is not key=value; put a value with commas in brackets or quotes",
+      refuse(where,
+             "`{0}` is not key=value; a file is given as `file={0}`, a value with commas in "
+             "brackets or quotes",
              pieces[i]);
     }
     if (std::ranges::find(seen, sides->first) != seen.end()) {

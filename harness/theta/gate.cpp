@@ -12,7 +12,8 @@ const std::vector<GateKind>& gate_kinds() {
                    "frequent as they should be, limit {1}",
        .falls = Falls::by_its_logarithm},
       {.name = "effective observations",
-       .sentence = "the spread is known only as well as from {0} normal values; {1} are needed",
+       .sentence = "the error of the estimate is known only as well as from {0} normal values; {1} "
+                   "are needed",
        .falls = Falls::inversely},
       {.name = "level factor after correction",
        .sentence = "the observations are so skewed that false alarms on one side are {0} times as "

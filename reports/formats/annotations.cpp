@@ -36,9 +36,8 @@ double badness(const Test& test) {
 
 std::string annotation(const char* kind, const Test& test) {
   std::string where;
-  if (!test.file.empty()) {
+  if (!test.file.empty())
     where = fmt::format("file={},line={},", property(test.file), std::max(test.line, 1));
-  }
   std::string text = plain_text(test);
   while (text.ends_with('\n')) text.pop_back();
   return fmt::format("::{} {}title={}::{}\n", kind, where,

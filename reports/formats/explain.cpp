@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <ranges>
 
 #include "reports/report_formats.h"
 #include "reports/words/describe.h"
@@ -52,15 +53,19 @@ std::string explain(const Suite& suite, const Test& test, int width, const Ledge
     for (const std::string& part : wrap(clean(text), width))
       if (!part.empty()) out += part + "\n";
   };
-  const std::string where = words.place.empty() ? "" : " (" + words.place + ")";
-  say(fmt::format("{} {}{}", mark(standing(test)), one_line(test.id), where));
+  say(fmt::format("{} {}{}", mark(standing(test)), one_line(test.id),
+                  words.place.empty() ? "" : " (" + words.place + ")"));
   out += "\n";
   std::string text = fmt::format("The claim is `{}`. ", one_line(test.claim));
   const bool passed = test.verdict == Verdict::pass && test.expected == Verdict::pass;
   const std::string found = passed ? words.sentence : trouble(test);
-  for (const std::string& part : {words.meaning, sentence(found)}) {
+  auto alarms = ledger.series | std::views::filter([&](const LedgerSeries& each) {
+                  return each.alarm && each.test == test.id;
+                });
+  const std::string meaning =
+      passed && !alarms.empty() ? "This run alone shows nothing against the claim." : words.meaning;
+  for (const std::string& part : {meaning, sentence(found)})
     if (!part.empty()) text += part + " ";
-  }
   text += how_sure(test, words, found);
   std::vector<Step> next = steps(test);
   if (!next.empty() && next[0].label == "note") {
@@ -71,21 +76,17 @@ std::string explain(const Suite& suite, const Test& test, int width, const Ledge
   if (test.verdict == Verdict::invalid && !broken.empty()) text += broken + " ";
   text += fact_of(words, "observations", "These observations were drawn: ");
   say(text);
-  if (is_evidence(test) && test.verdict != Verdict::skipped && suite.alpha > 0) {
+  if (is_evidence(test) && test.verdict != Verdict::skipped && suite.alpha > 0)
     say(false_alarms(suite.alpha) + " In such a run a true claim of the suite fails.");
-  }
-  bool alarms = false;
-  for (const LedgerSeries& series : ledger.series) {
-    if (!series.alarm || series.test != test.id) continue;
+  for (const LedgerSeries& series : alarms) {
     out += "\n";
     say(fmt::format("The ledger {} raises an alarm for {}. {} The series has {}.", ledger.file,
                     one_line(series_name(ledger, series)), alarm_sentence(series),
                     series_sentence(series)));
     if (const std::string log = changes(series); !log.empty())
       next.push_back({.label = "what changed before that night", .paste = log});
-    alarms = true;
   }
-  if (alarms) {
+  if (!alarms.empty()) {
     constexpr Form escapes[] = {{'"', "\\\""}, {'\\', "\\\\"}};
     const std::string line = in_single_quotes("begin \"" + escape(test.id, escapes) + "\"");
     next.push_back({.label = "if the change is meant, begin anew with the next night",

@@ -2,6 +2,7 @@
 #include <plugin_abi.h>
 
 #include <cmath>
+#include <iterator>
 
 namespace {
 
@@ -44,7 +45,7 @@ AssayEstimator estimator(const char* name) {
 
 const AssayEstimator estimators[] = {estimator<uniform_direction>("uniform"),
                                      estimator<cosine_direction>("cosine")};
-const AssayLibrary library{sizeof library, ASSAY_ABI_VERSION, estimators, 2};
+const AssayLibrary library{sizeof library, ASSAY_ABI_VERSION, estimators, std::size(estimators)};
 
 }  // namespace
 
