@@ -16,8 +16,6 @@
 #include "estimators/estimator.h"
 #include "estimators/sampler.h"
 #include "stats/cells/adaptive_cells.h"
-#include "stats/cells/cell_quadrature.h"
-#include "stats/cells/plane_cells.h"
 
 namespace assay::harness {
 

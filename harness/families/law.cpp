@@ -13,8 +13,7 @@
 #include "harness/plan/outcome.h"
 #include "harness/run/evaluate.h"
 #include "stats/basics/scores.h"
-#include "stats/cells/chi_square_fit.h"
-#include "stats/cells/chi_square_two_sample.h"
+#include "stats/cells/chi_square.h"
 #include "stats/gates/assumption_gates.h"
 #include "stats/planning/power.h"
 

@@ -8,7 +8,6 @@
 #include "harness/theta/ask.h"
 #include "stats/gates/copies.h"
 #include "stats/gates/dependence.h"
-#include "stats/gates/independence_gates.h"
 
 namespace assay::harness {
 namespace {

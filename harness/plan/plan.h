@@ -87,7 +87,7 @@ inline constexpr std::size_t fewest_in_order = 9;
 void require_independent_sides(const Question& question, const Pilots& pilots, std::uint64_t count);
 
 /// Notes what the first `count` rows of every recorded subject say of independence
-/// (stats/gates/independence_gates.h). Dependent rows make a test of means one of batch means, if
+/// (stats/gates/dependence.h). Dependent rows make a test of means one of batch means, if
 /// they are enough, and other tests invalid. A run of rows that recurs (stats/gates/copies.h) makes
 /// any test invalid, a forced method as well. For dependence too weak for a gate, a test of means
 /// allows (stats::allowance_for_dependence).

@@ -14,7 +14,7 @@
 #include "harness/draws/sampler_setup.h"
 #include "harness/families/families.h"
 #include "harness/record/record_of.h"
-#include "stats/cells/chi_square_fit.h"
+#include "stats/cells/chi_square.h"
 #include "stats/images/image_moments.h"
 #include "stats/tails/kolmogorov.h"
 

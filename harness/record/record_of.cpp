@@ -20,7 +20,7 @@
 #include "harness/theta/ask.h"
 #include "harness/theta/decision.h"
 #include "harness/theta/methods.h"
-#include "stats/gates/independence_gates.h"
+#include "stats/gates/dependence.h"
 #include "stats/means/student_t.h"
 #include "stats/planning/holm.h"
 #include "stats/tails/tails.h"

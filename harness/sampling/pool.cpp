@@ -13,7 +13,7 @@
 #include "estimators/core/value.h"
 #include "estimators/ready_made.h"
 #include "harness/sampling/prepare.h"
-#include "stats/gates/independence_gates.h"
+#include "stats/gates/dependence.h"
 #include "stats/images/image_moments.h"
 #include "stats/variances/group_variance.h"
 

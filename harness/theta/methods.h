@@ -12,7 +12,7 @@
 #include "harness/sampling/image_views.h"
 #include "harness/sampling/summary.h"
 #include "harness/theta/decision.h"
-#include "stats/cells/chi_square_two_sample.h"
+#include "stats/cells/chi_square.h"
 #include "stats/means/power_exact.h"
 #include "stats/planning/looks.h"
 

@@ -1,18 +1,188 @@
 #include "stats/cells/adaptive_cells.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <iterator>
 #include <optional>
 #include <queue>
-#include <span>
 
 #include "stats/basics/check.h"
 #include "stats/basics/moments.h"
+#include "stats/basics/scores.h"
 
 namespace assay::stats {
 namespace {
+
+constexpr std::size_t probes_a_side = 256;
+constexpr std::size_t probes_at_once = 32;
+// Panels of a cell that shows only a corner of the support at its side.
+constexpr std::size_t panels_of_a_corner = 32;
+
+// The densities of this many lines stay in the cache.
+constexpr std::size_t lines_at_once = 36;
+
+// The density at x, integrated over part of the other coordinate. `density` must outlive the
+// result.
+AdaptiveQuadrature::Function across(const PlaneDensity& density, Span y, AdaptiveQuadrature& rule) {
+  const std::vector<Span> parts = cut(y, density.y, density.y_panels);
+  return [&density, &rule, parts](const AdaptiveQuadrature::Places& places) {
+    std::vector<AdaptiveQuadrature::Line> lines;
+    for (const double x : places) {
+      for (const Span& part : parts) lines.push_back({x, part});
+    }
+    AdaptiveQuadrature::Values values;
+    for (std::size_t first = 0; first < lines.size(); first += lines_at_once) {
+      const auto some = std::span(lines).subspan(first);
+      const auto integrals =
+          rule.along(density.values, some.first(std::min(some.size(), lines_at_once)));
+      for (std::size_t i = 0; i < integrals.size(); ++i) {
+        Integral& sum = values[(first + i) / parts.size()];
+        sum = sum + integrals[i];
+      }
+    }
+    return values;
+  };
+}
+
+// The mass that a support may hide from beside_support() in a cell. The hidden corner is half the
+// squared step between the points, as dense as what was met next to it.
+double hidden_beside_support(const PlaneCell& cell, double densest) {
+  const double step = 1 / static_cast<double>(probes_a_side);
+  return densest * cell.x.width() * cell.y.width() * step * step / 2;
+}
+
+// Integrates a density over one rectangle after another, all within the limits together. It
+// integrates adaptively along y within x. So a jump along any curve is a border in y, which
+// bisection finds. In x it is at most a kink. The tolerance applies to each inner and each outer
+// part. Throws std::domain_error where the density is negative or not finite.
+class CellQuadrature {
+ public:
+  // Keeps a reference to the density.
+  CellQuadrature(const PlaneDensity& density, QuadratureLimits limits)
+      : density_(density), rule_(limits) {}
+
+  Integral over(const PlaneCell& cell) {
+    rule_.forget_largest();
+    return over(density_, cell);
+  }
+
+  // For a cell in which over() met no density, next to one in which it did. It looks for density
+  // along the sides, at 256 points each. The error does not cover what may still hide there.
+  Integral beside_support(const PlaneCell& cell) {
+    rule_.forget_largest();
+    for (std::size_t k = 0; !shown_at(cell, k);) {
+      if ((k += probes_at_once) == probes_a_side) return {};
+    }
+    const PlaneDensity closer{.x = cell.x,
+                              .y = cell.y,
+                              .values = density_.values,
+                              .x_panels = {panels_of_a_corner},
+                              .y_panels = {panels_of_a_corner}};
+    return over(closer, cell);
+  }
+
+  double densest() const { return densest_; }                 // Largest density so far.
+  double densest_of_last() const { return rule_.largest(); }  // Largest in the last cell.
+  bool exhausted() const { return rule_.exhausted(); }
+
+ private:
+  Integral over(const PlaneDensity& density, const PlaneCell& cell) {
+    Integral sum;
+    const auto strip = across(density, cell.y, rule_);
+    for (const Span& part : cut(cell.x, density.x, density.x_panels)) {
+      sum = sum + rule_.over(strip, part);
+    }
+    densest_ = std::max(densest_, rule_.largest());
+    return sum;
+  }
+
+  // True if the density shows at some of the points of each side from this one on.
+  bool shown_at(const PlaneCell& cell, std::size_t first) {
+    constexpr double inside = 1e-9;
+    std::vector<double> x;
+    std::vector<double> y;
+    for (std::size_t k = first; k < first + probes_at_once; ++k) {
+      const double share = (static_cast<double>(k) + 0.5) / static_cast<double>(probes_a_side);
+      for (const double end : {inside, 1 - inside}) {
+        x.insert(x.end(), {cell.x.low + share * cell.x.width(), cell.x.low + end * cell.x.width()});
+        y.insert(y.end(), {cell.y.low + end * cell.y.width(), cell.y.low + share * cell.y.width()});
+      }
+    }
+    std::vector<double> values(x.size());
+    density_.values(x, y, values);
+    return std::ranges::any_of(values, [](double value) { return value > 0; });
+  }
+
+  const PlaneDensity& density_;
+  AdaptiveQuadrature rule_;
+  double densest_ = 0;
+};
+
+void check_ascending(const std::vector<double>& borders) {
+  check::at_least({"PlaneGrid", "number of borders"}, borders.size(), 2);
+  for (std::size_t i = 1; i < borders.size(); ++i) {
+    if (!(borders[i - 1] < borders[i]))
+      check::fail({"PlaneGrid", "border"}, borders[i], "ascending");
+  }
+}
+
+std::size_t slot(const std::vector<double>& borders, double x) {
+  if (!(x >= borders.front() && x <= borders.back())) {
+    check::fail({"PlaneGrid::index", "coordinate"}, x, "inside the grid");
+  }
+  return std::min(count_up_to(borders, x), borders.size() - 1) - 1;
+}
+
+// The greatest density met in a cell's neighbours, 0 if none showed any.
+double densest_beside(const PlaneGrid& grid, const std::vector<double>& densest,
+                      std::size_t index) {
+  const std::size_t columns = grid.columns();
+  const std::size_t row = index / columns;
+  const std::size_t column = index % columns;
+  double most = 0;
+  for (std::size_t r = row == 0 ? 0 : row - 1; r <= std::min(row + 1, grid.rows() - 1); ++r) {
+    // An azimuth goes round: the last column is beside the first.
+    for (const std::size_t c : {(column + columns - 1) % columns, column, (column + 1) % columns}) {
+      most = std::max(most, densest[r * columns + c]);
+    }
+  }
+  return most;
+}
+
+void check_borders(const PlaneGrid& grid) {
+  check_ascending(grid.x_borders);
+  check_ascending(grid.y_borders);
+}
+
+// Integral of the density over every cell. If a cell shows no density at its nodes but a neighbour
+// does, its sides are searched.
+std::vector<Integral> integrals_over(const PlaneGrid& grid, CellQuadrature& quadrature) {
+  check_borders(grid);
+  std::vector<Integral> found;
+  std::vector<double> densest;
+  for (std::size_t i = 0; i < grid.size(); ++i) {
+    found.push_back(quadrature.over(grid.cell(i)));
+    densest.push_back(quadrature.densest_of_last());
+  }
+  // A cell found beside the support is support too, with cells beside it.
+  std::vector<bool> searched(grid.size());
+  for (bool more = true; more;) {
+    more = false;
+    for (std::size_t i = 0; i < found.size(); ++i) {
+      if (found[i].value > 0 || searched[i] || densest_beside(grid, densest, i) == 0) continue;
+      searched[i] = true;
+      found[i] = quadrature.beside_support(grid.cell(i));
+      densest[i] = quadrature.densest_of_last();
+      more = more || found[i].value > 0;
+    }
+  }
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    if (!searched[i]) continue;
+    const double beside = std::max(densest[i], densest_beside(grid, densest, i));
+    found[i].error += hidden_beside_support(grid.cell(i), beside);
+  }
+  return found;
+}
 
 constexpr int most_halvings = 48;
 // A cell is looked at at these places to find the side to halve.
@@ -221,6 +391,40 @@ void check_limits(double largest_share, const QuadratureLimits& limits) {
 }
 
 }  // namespace
+
+AdaptiveQuadrature::Function marginal_density(const PlaneDensity& density,
+                                              AdaptiveQuadrature& rule) {
+  return across(density, density.y, rule);
+}
+
+std::size_t PlaneGrid::index(double x, double y) const {
+  return slot(x_borders, x) * columns() + slot(y_borders, y);
+}
+
+PlaneCell PlaneGrid::cell(std::size_t index) const {
+  const std::size_t row = index / columns();
+  const std::size_t column = index % columns();
+  return {{x_borders[row], x_borders[row + 1]}, {y_borders[column], y_borders[column + 1]}};
+}
+
+std::size_t HalvedCells::index(double x, double y) const {
+  const Node* node = &nodes[grid.index(x, y)];
+  while (node->halves > 0) {
+    node = &nodes[node->halves + ((node->along_x ? x : y) < node->border ? 0 : 1)];
+  }
+  return node->number;
+}
+
+HalvedCells whole_cells(const PlaneGrid& grid) {
+  check_borders(grid);
+  HalvedCells all{.grid = grid};
+  for (std::size_t i = 0; i < grid.size(); ++i) {
+    all.nodes.push_back({.number = i});
+    all.cells.push_back(grid.cell(i));
+    all.grid_cells.push_back(i);
+  }
+  return all;
+}
 
 AdaptiveCells adaptive_cells(const PlaneGrid& grid, const PlaneDensity& density,
                              double largest_share, QuadratureLimits limits) {

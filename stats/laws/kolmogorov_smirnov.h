@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "stats/tails/smirnov.h"
+#include "stats/tails/kolmogorov.h"
 #include "stats/tails/test_result.h"
 
 namespace assay::stats {
@@ -52,7 +52,7 @@ TwoSampleDistance ks_distance(std::span<const double> sorted_x, std::span<const 
 // Null hypothesis: the sample follows the law (the two samples one law). The p-value is
 // log_p_upper; log_p_lower is 0, because a fit that is too good is not tested. One sample: exact
 // for continuous laws. Two samples: exact for every law, given the ties of
-// both together. smirnov.h says where a bound or the limit law has to serve.
+// both together. kolmogorov.h says where a bound or the limit law has to serve.
 TestResult kolmogorov_smirnov(const OneSampleDistance& distance);
 TestResult kolmogorov_smirnov(const TwoSampleDistance& distance);
 

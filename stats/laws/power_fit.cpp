@@ -9,7 +9,6 @@
 #include "stats/planning/planning.h"
 #include "stats/planning/power.h"
 #include "stats/tails/kolmogorov.h"
-#include "stats/tails/smirnov.h"
 
 namespace assay::stats {
 namespace {

@@ -24,8 +24,8 @@ inline TestResult by_tails(double statistic, Distribution law, LogTails tails) {
   return {statistic, std::move(law), tails.lower, tails.upper};
 }
 
-// The result of a difference that is known without error: nothing speaks against 0, and any other is
-// certain.
+// The result of a difference that is known without error: nothing speaks against 0, and any other
+// is certain.
 TestResult without_error(double difference, const char* law);
 
 enum class Tail { lower, upper };

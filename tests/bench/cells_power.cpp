@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "stats/cells/adaptive_cells.h"
-#include "stats/cells/chi_square_fit.h"
+#include "stats/cells/chi_square.h"
 #include "tests/philox.h"
 #include "tests/stats/point_by_point.h"
 

@@ -5,7 +5,7 @@
 #include <fmt/format.h>
 
 #include "harness/draws/sampler_setup.h"
-#include "stats/cells/chi_square_fit.h"
+#include "stats/cells/chi_square.h"
 #include "tests/harness/questions.h"
 #include "tests/harness/table.h"
 

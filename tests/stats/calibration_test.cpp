@@ -1,7 +1,7 @@
 // Every p-value under its own null hypothesis. False-alarm rate of each test: 1e-5
 // (tests/stats/calibration.h). The seed is 1, and streams are numbered in order of writing.
 
-#include "stats/cells/chi_square_fit.h"
+#include "stats/cells/chi_square.h"
 #include "stats/laws/kolmogorov_smirnov.h"
 #include "stats/means/binomial.h"
 #include "stats/means/student_t.h"

@@ -1,7 +1,7 @@
 // Each method is broken in one known way, and the calibration of tests/stats/calibration.h must
 // notice. With these repetitions every one misses by at least twice the threshold in expectation.
 
-#include "stats/cells/chi_square_fit.h"
+#include "stats/cells/chi_square.h"
 #include "stats/laws/kolmogorov_smirnov.h"
 #include "stats/means/student_t.h"
 #include "stats/tails/kolmogorov.h"

@@ -1,7 +1,6 @@
 #pragma once
 
-#include "stats/cells/cell_quadrature.h"
-#include "stats/cells/plane_cells.h"
+#include "stats/cells/adaptive_cells.h"
 
 namespace assay::tests {
 

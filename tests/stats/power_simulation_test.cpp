@@ -1,7 +1,7 @@
 // Predicted power against simulated rejections. Hoeffding's bound gives a false-alarm rate of 1e-5
 // each. |rate - power| <= sqrt(ln(2e5) / (2 R)), .0247 at R = 10000, .0391 at R = 4000.
 
-#include "stats/cells/chi_square_fit.h"
+#include "stats/cells/chi_square.h"
 #include "stats/laws/kolmogorov_smirnov.h"
 #include "stats/means/skewness_corrected_t.h"
 #include "stats/means/student_t.h"

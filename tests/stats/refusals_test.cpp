@@ -2,12 +2,9 @@
 
 #include "stats/basics/moments.h"
 #include "stats/cells/adaptive_cells.h"
-#include "stats/cells/cell_effect.h"
-#include "stats/cells/chi_square_fit.h"
-#include "stats/cells/chi_square_two_sample.h"
+#include "stats/cells/chi_square.h"
 #include "stats/gates/assumption_gates.h"
 #include "stats/gates/dependence.h"
-#include "stats/gates/independence_gates.h"
 #include "stats/images/image_equivalence.h"
 #include "stats/images/image_moments.h"
 #include "stats/laws/kolmogorov_smirnov.h"

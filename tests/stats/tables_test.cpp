@@ -1,4 +1,4 @@
-#include "stats/cells/chi_square_two_sample.h"
+#include "stats/cells/chi_square.h"
 #include "stats/laws/kolmogorov_smirnov.h"
 #include "stats/means/skewness_corrected_t.h"
 #include "stats/tails/tails.h"

@@ -1,6 +1,6 @@
 #include "stats/cells/adaptive_cells.h"
 
-#include "stats/cells/chi_square_fit.h"
+#include "stats/cells/chi_square.h"
 #include "tests/stats/point_by_point.h"
 #include "tests/stats/prelude.h"
 

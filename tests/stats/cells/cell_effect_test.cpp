@@ -1,7 +1,5 @@
-#include "stats/cells/cell_effect.h"
-
 #include "stats/basics/moments.h"
-#include "stats/cells/chi_square_fit.h"
+#include "stats/cells/chi_square.h"
 #include "tests/stats/prelude.h"
 
 namespace assay::stats {

@@ -1,5 +1,4 @@
-#include "stats/cells/chi_square_two_sample.h"
-
+#include "stats/cells/chi_square.h"
 #include "tests/stats/prelude.h"
 
 namespace assay::stats {

@@ -1,5 +1,3 @@
-#include "stats/gates/independence_gates.h"
-
 #include "stats/gates/dependence.h"
 #include "stats/means/student_t.h"
 #include "tests/stats/prelude.h"

@@ -1,5 +1,3 @@
-#include "stats/tails/smirnov.h"
-
 #include "stats/tails/kolmogorov.h"
 #include "tests/stats/prelude.h"
 
