@@ -113,35 +113,32 @@ Integral given_up(Integral sum) {
 
 // A part of a line. Its integral is the sum over its two halves, halved again or not.
 struct AdaptiveQuadrature::Part {
-  double x;
-  Span span;
+  Line line;
   Integral whole;  // By its own nodes.
   int depth;
   Integral integral = {};
   std::size_t halves = 0;  // Index of the first half, behind its part; 0 if there is none.
 };
 
-class AdaptiveQuadrature::Level {
- public:
-  void add(double x, Span span) {
-    const Places at = places_in(span);
-    x_.insert(x_.end(), at.size(), x);
-    y_.insert(y_.end(), at.begin(), at.end());
+// The integrals along lines without halving, whose places are asked for together.
+std::vector<Integral> AdaptiveQuadrature::whole(const PlaneValues& density,
+                                                std::span<const Line> lines) {
+  std::vector<double> x;
+  std::vector<double> y;
+  for (const Line& line : lines) {
+    const Places at = places_in(line.y);
+    x.insert(x.end(), at.size(), line.x);
+    y.insert(y.end(), at.begin(), at.end());
   }
-  void ask(const PlaneValues& density) {
-    densities_.resize(y_.size());
-    density(x_, y_, densities_);
+  std::vector<double> densities(y.size());
+  density(x, y, densities);
+  std::vector<Integral> integrals;
+  for (std::span<const double> rest = densities; const Line& line : lines) {
+    integrals.push_back(sampled_in(line.y, counted(rest.first<nodes + 2>())).integral);
+    rest = rest.subspan(nodes + 2);
   }
-  /// Densities of that part, by the order of adding.
-  std::span<const double, nodes + 2> densities(std::size_t part) const {
-    return std::span(densities_).subspan(part * (nodes + 2)).first<nodes + 2>();
-  }
-
- private:
-  std::vector<double> x_;
-  std::vector<double> y_;
-  std::vector<double> densities_;
-};
+  return integrals;
+}
 
 AdaptiveQuadrature::Values AdaptiveQuadrature::counted(
     std::span<const double, nodes + 2> densities) {
@@ -187,26 +184,24 @@ Integral AdaptiveQuadrature::refined(const Function& function, Span span, Integr
 void AdaptiveQuadrature::halve(const PlaneValues& density, std::vector<Part>& parts,
                                std::size_t first, bool ended) {
   const std::size_t last = parts.size();
-  Level level;
+  std::vector<Line> halves;
   for (std::size_t i = first; i < last; ++i) {
-    for (const Span& half : parts[i].span.halves()) level.add(parts[i].x, half);
+    for (const Span& half : parts[i].line.y.halves()) halves.push_back({parts[i].line.x, half});
   }
-  level.ask(density);
+  const std::vector<Integral> found = whole(density, halves);
   for (std::size_t i = first; i < last; ++i) {
-    const auto [low, high] = parts[i].span.halves();
-    const std::size_t place = 2 * (i - first);
-    const Integral one = sampled_in(low, counted(level.densities(place))).integral;
-    const Integral two = sampled_in(high, counted(level.densities(place + 1))).integral;
+    const std::size_t one = 2 * (i - first);
     const int depth = parts[i].depth;
-    parts[i].integral = from_halves(parts[i].whole, one, two);
+    parts[i].integral = from_halves(parts[i].whole, found[one], found[one + 1]);
     if (is_good(parts[i].integral, limits_.tolerance)) continue;
     if (depth <= 0 || ended) {
       parts[i].integral = given_up(parts[i].integral);
       continue;
     }
     parts[i].halves = parts.size();
-    parts.push_back({.x = parts[i].x, .span = low, .whole = one, .depth = depth - 1});
-    parts.push_back({.x = parts[i].x, .span = high, .whole = two, .depth = depth - 1});
+    for (const std::size_t half : {one, one + 1}) {
+      parts.push_back({.line = halves[half], .whole = found[half], .depth = depth - 1});
+    }
   }
 }
 
@@ -216,16 +211,10 @@ std::optional<std::vector<Integral>> AdaptiveQuadrature::side_by_side(const Plan
                                                                       std::span<const Line> lines) {
   constexpr std::size_t most_of_a_level = std::size_t{1} << 20;
   const bool ended = exhausted();
-  Level wholes;
-  for (const Line& line : lines) wholes.add(line.x, line.y);
-  wholes.ask(density);
+  const std::vector<Integral> wholes = whole(density, lines);
   std::vector<Part> parts;
   for (const Line& line : lines) {
-    const Values at = counted(wholes.densities(parts.size()));
-    parts.push_back({.x = line.x,
-                     .span = line.y,
-                     .whole = sampled_in(line.y, at).integral,
-                     .depth = deepest_bisection});
+    parts.push_back({.line = line, .whole = wholes[parts.size()], .depth = deepest_bisection});
   }
   for (std::size_t first = 0, last = 0; first < parts.size(); first = last) {
     last = parts.size();

@@ -104,9 +104,9 @@ class AdaptiveQuadrature {
 
  private:
   struct Part;
-  class Level;
 
   Values counted(std::span<const double, nodes + 2> densities);
+  std::vector<Integral> whole(const PlaneValues& density, std::span<const Line> lines);
   void halve(const PlaneValues& density, std::vector<Part>& parts, std::size_t first, bool ended);
   std::optional<std::vector<Integral>> side_by_side(const PlaneValues& density,
                                                     std::span<const Line> lines);
