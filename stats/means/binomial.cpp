@@ -2,12 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "stats/basics/check.h"
 #include "stats/basics/search.h"
 #include "stats/tails/special.h"
-#include "stats/tails/tails.h"
 
 namespace assay::stats {
 namespace {
@@ -46,46 +44,22 @@ Trials trials_at(Successes observed, double probability) {
   return {observed.trials, std::clamp(probability, 0.0, 1.0)};
 }
 
-// The null line by the probability q of y. p = start + slope q lies inside [0, 1] for q in [first,
-// last].
-struct NullLine {
-  double start = 0;
-  double slope = 1;
-  double first = 0;
-  double last = 1;
-
-  bool empty() const { return first > last; }
-};
-
-NullLine null_line(const TwoValued& x, const TwoValued& y, Contrast null_value) {
-  const double width = width_of(x.range);
-  NullLine line;
-  line.start = (null_value.offset + null_value.scale * y.range.low - x.range.low) / width;
-  line.slope = null_value.scale * width_of(y.range) / width;
-  line.first = std::max(0.0, -line.start / line.slope);
-  line.last = std::min(1.0, (1 - line.start) / line.slope);
-  return line;
-}
-
-// ln(A B) at one point of the line.
-struct LogProduct {
-  Successes x;
-  Successes y;
-  NullLine line;
-
-  double operator()(double q) const {
-    const double log_a = binomial_lower(x.successes, trials_at(x, line.start + line.slope * q));
-    const double log_b = binomial_upper(y.successes, trials_at(y, q));
-    return std::max(special::lowest_log(), log_a + log_b);
-  }
-};
-
-// ln p of "E x - scale E y >= offset", small when x has few high values and y many.
+// ln p of "E x - scale E y >= offset", small when x has few high values and y many. On the null
+// line p = start + slope q by the probability q of y. It lies inside [0, 1] from `first` to `last`.
 double log_p_lower(const TwoValued& x, const TwoValued& y, Contrast null_value) {
-  const NullLine line = null_line(x, y, null_value);
-  if (line.empty()) return line.start > 0 ? special::lowest_log() : 0;
-  // Concave on the line. A maximum missed by 1e-9 of it is missed by second order.
-  const double log_w = maximum(LogProduct{x.high, y.high, line}, line.first, line.last).value;
+  const double width = width_of(x.range);
+  const double start = (null_value.offset + null_value.scale * y.range.low - x.range.low) / width;
+  const double slope = null_value.scale * width_of(y.range) / width;
+  const double first = std::max(0.0, -start / slope);
+  const double last = std::min(1.0, (1 - start) / slope);
+  if (first > last) return start > 0 ? special::lowest_log() : 0;
+  // ln(A B), concave on the line. A maximum missed by 1e-9 of it is missed by second order.
+  const auto log_product = [&](double q) {
+    const double log_a = binomial_lower(x.high.successes, trials_at(x.high, start + slope * q));
+    const double log_b = binomial_upper(y.high.successes, trials_at(y.high, q));
+    return std::max(special::lowest_log(), log_a + log_b);
+  };
+  const double log_w = maximum(log_product, first, last).value;
   return special::clamp_log(log_w + std::log1p(-log_w));
 }
 
@@ -104,16 +78,13 @@ TestResult binomial(Successes observed, double null_probability) {
 }
 
 TestResult binomial_within(Successes observed, double q, double error) {
-  constexpr double impossible = std::numeric_limits<double>::lowest();
-  const double least = q - error;
-  const double most = q + error;
-  return {
-      .statistic = static_cast<double>(observed.successes),
-      .distribution = {.family = "binomial",
-                       .parameters = {static_cast<double>(observed.trials),
-                                      std::clamp(q, 0.0, 1.0)}},
-      .log_p_lower = least > 1 ? impossible : binomial(observed, std::max(least, 0.0)).log_p_lower,
-      .log_p_upper = most < 0 ? impossible : binomial(observed, std::min(most, 1.0)).log_p_upper};
+  const Trials least = trials_at(observed, q - error);
+  const Trials most = trials_at(observed, q + error);
+  const double impossible = special::lowest_log();
+  return {static_cast<double>(observed.successes),
+          {"binomial", {static_cast<double>(observed.trials), trials_at(observed, q).probability}},
+          q - error > 1 ? impossible : binomial_lower(observed.successes, least),
+          q + error < 0 ? impossible : binomial_upper(observed.successes, most)};
 }
 
 Interval clopper_pearson(Successes observed, double confidence) {
@@ -159,17 +130,7 @@ TwoValued two_valued(const Moments& x, Range range) {
 TestResult two_valued_mean(const TwoValued& x, double null_mean) {
   check_sample("two_valued_mean", x);
   check::finite({"two_valued_mean", "null_mean"}, null_mean);
-  const double probability = (null_mean - x.range.low) / width_of(x.range);
-  TestResult result = binomial(x.high, std::clamp(probability, 0.0, 1.0));
-  if (probability < 0) {
-    result.log_p_lower = 0;
-    result.log_p_upper = special::lowest_log();
-  }
-  if (probability > 1) {
-    result.log_p_lower = special::lowest_log();
-    result.log_p_upper = 0;
-  }
-  return result;
+  return binomial_within(x.high, (null_mean - x.range.low) / width_of(x.range), 0);
 }
 
 TestResult two_valued_contrast(const TwoValued& x, const TwoValued& y, Contrast null_value) {

@@ -29,61 +29,41 @@ double reach_toward(const ConstantSample& sample, double other) {
   return other > sample.value ? sample.high - sample.value : sample.value - sample.low;
 }
 
-// The two ways in which a constant and a reference may differ although the claim holds.
-struct Difference {
-  double size = 0;  // d of the header.
-  // Distance from the constant to the end of the range on the reference's side.
-  double reach = 0;
-  double error = 0;
-  double count = 0;
-
-  // ln P(no other value in `count`), if these values move the mean by `shift`.
-  double log_unseen(double shift) const {
-    if (shift >= reach) return shift > 0 ? probability_zero : 0;
-    return count * std::log1p(-shift / reach);
-  }
-  // ln p with the reference off by `errors` of its standard errors.
-  double log_p(double errors) const {
-    const double shift = std::max(0.0, size - errors * error);
-    const double off = std::min(0.0, std::numbers::ln2 + normal_tails(errors).upper);
-    return std::max(probability_zero, log_unseen(shift) + off);
-  }
-};
-
-double largest_log_p(const Difference& difference) {
-  const double least = std::max(0.0, (difference.size - difference.reach) / difference.error);
-  const auto log_p = [&](double errors) { return difference.log_p(errors); };
-  return maximum(log_p, least, difference.size / difference.error).value;
+// ln P(no other value in the sample), if these values move its mean by `shift` toward the other.
+double log_unseen(const ConstantSample& sample, double other, double shift) {
+  const double reach = reach_toward(sample, other);
+  if (shift >= reach) return shift > 0 ? probability_zero : 0;
+  return static_cast<double>(sample.count) * std::log1p(-shift / reach);
 }
 
 }  // namespace
 
 double log_p_constant(const ConstantSample& sample, const Reference& reference) {
   check_arguments(sample, reference);
-  const double size = std::abs(reference.value - sample.value);
-  const Difference difference{.size = size,
-                              .reach = reach_toward(sample, reference.value),
-                              .error = reference.standard_error,
-                              .count = static_cast<double>(sample.count)};
+  const auto [other, error] = reference;
+  const double size = std::abs(other - sample.value);
   if (size == 0) return 0;
-  return difference.error > 0 ? largest_log_p(difference) : difference.log_unseen(size);
+  if (!(error > 0)) return log_unseen(sample, other, size);
+  const double least = std::max(0.0, (size - reach_toward(sample, other)) / error);
+  // With the reference off by `errors` of its standard errors.
+  const auto log_p = [&, other = other, error = error](double errors) {
+    const double shift = std::max(0.0, size - errors * error);
+    const double off = std::min(0.0, std::numbers::ln2 + normal_tails(errors).upper);
+    return std::max(probability_zero, log_unseen(sample, other, shift) + off);
+  };
+  return maximum(log_p, least, size / error).value;
 }
 
 double log_p_constants(const ConstantSample& a, const ConstantSample& b) {
   check_arguments(a, {b.value});
   check_arguments(b, {a.value});
-  const auto at = [](const ConstantSample& sample, double other) {
-    return Difference{.reach = reach_toward(sample, other),
-                      .count = static_cast<double>(sample.count)};
-  };
-  const Difference of_a = at(a, b.value);
-  const Difference of_b = at(b, a.value);
   const double size = std::abs(b.value - a.value);
-  const double least = std::max(0.0, size - of_b.reach);
-  const double most = std::min(size, of_a.reach);
+  const double least = std::max(0.0, size - reach_toward(b, a.value));
+  const double most = std::min(size, reach_toward(a, b.value));
   if (least > most) return probability_zero;
   const auto log_p = [&](double shift) {
-    return std::max(probability_zero, of_a.log_unseen(shift) + of_b.log_unseen(size - shift));
+    return std::max(probability_zero,
+                    log_unseen(a, b.value, shift) + log_unseen(b, a.value, size - shift));
   };
   return maximum(log_p, least, most).value;
 }

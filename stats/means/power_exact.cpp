@@ -4,9 +4,7 @@
 #include <cmath>
 #include <vector>
 
-#include "stats/basics/check.h"
-#include "stats/basics/search.h"
-#include "stats/tails/tails.h"
+#include "stats/planning/planning.h"
 
 namespace assay::stats {
 namespace {
@@ -27,17 +25,15 @@ struct Upward {
 };
 
 Upward upward(const char* function, const ExactMeanPlan& plan, double effect) {
-  check::inside_unit({function, "alpha"}, plan.rates.alpha);
-  check::inside_unit({function, "beta"}, plan.rates.beta);
+  planning::check_rates(function, plan.rates);
   check::non_negative({function, "allow"}, plan.allow);
   check::finite({function, "effect"}, effect);
   if (effect == 0) check::fail({function, "effect"}, effect, "not 0");
-  const double level = plan.rates.two_sided ? plan.rates.alpha / 2 : plan.rates.alpha;
   const bool mirrored = effect < 0;
   const Range range = mirrored ? Range{-plan.range.high, -plan.range.low} : plan.range;
   const double null = mirrored ? -plan.null_mean : plan.null_mean;
   return {mirrored ? -1.0 : 1.0, range, null + plan.allow, null + std::abs(effect),
-          std::log(level)};
+          planning::critical_tail(plan.rates).log_probability};
 }
 
 // ---- Binomial

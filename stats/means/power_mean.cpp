@@ -3,7 +3,6 @@
 
 #include "stats/means/skewness_corrected_t.h"
 #include "stats/planning/planning.h"
-#include "stats/planning/power.h"
 
 namespace assay::stats {
 namespace {
@@ -87,12 +86,6 @@ double z_sum(const ErrorRates& rates) {
   return normal_quantile(critical_tail(rates)) + upper_normal_quantile(rates.beta);
 }
 
-// Observations that t needs beyond the normal formula: z_alpha^2 / 2 (Guenther 1981), nearly exact.
-double beyond_normal(const ErrorRates& rates) {
-  const double z = normal_quantile(critical_tail(rates));
-  return z * z / 2;
-}
-
 }  // namespace
 
 double planned_variance(const Moments& pilot) {
@@ -146,7 +139,9 @@ std::optional<std::uint64_t> student_t_sample_size(const MeanPlan& plan, double 
     return Power(scale_of(plan, n), plan.rates).at({plan.allow, detect}) >= 1 - plan.rates.beta;
   };
   const double minimum = std::max(2.0, std::ceil(2 / plan.allocation));
-  return planning::smallest_sample(enough, guess + beyond_normal(plan.rates), minimum);
+  // t needs z_alpha^2 / 2 beyond the normal formula (Guenther 1981), nearly exact.
+  const double z = normal_quantile(critical_tail(plan.rates));
+  return planning::smallest_sample(enough, guess + z * z / 2, minimum);
 }
 
 }  // namespace assay::stats

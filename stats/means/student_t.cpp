@@ -69,19 +69,6 @@ double critical_value(double confidence, double degrees) {
   return student_t_quantile({Tail::upper, std::log((1 - confidence) / 2)}, degrees);
 }
 
-// Distance of E x - ratio E y = 0 beyond its critical value. Negative inside the interval.
-struct Excess {
-  const Moments& x;
-  const Moments& y;
-  double confidence;
-
-  double operator()(double ratio) const {
-    const Scale scale = scale_of("welch_ratio_interval", x, y, ratio);
-    const double t = contrast_of_means(x, y, {ratio, 0}) / scale.standard_error;
-    return std::abs(t) - critical_value(confidence, scale.degrees);
-  }
-};
-
 }  // namespace
 
 TestResult student_t(const Moments& x, Reference null_mean, const char* caller) {
@@ -144,7 +131,12 @@ Interval welch_ratio_interval(const Moments& x, const Moments& y, double confide
   const double centre = x.mean / y.mean;
   const double step =
       scale_of("welch_ratio_interval", x, y, centre).standard_error / std::abs(y.mean);
-  const Excess excess{x, y, confidence};
+  // Distance of E x - ratio E y = 0 beyond its critical value. Negative inside the interval.
+  const auto excess = [&](double ratio) {
+    const Scale scale = scale_of("welch_ratio_interval", x, y, ratio);
+    const double t = contrast_of_means(x, y, {ratio, 0}) / scale.standard_error;
+    return std::abs(t) - critical_value(confidence, scale.degrees);
+  };
   return {interval_end(excess, centre, -step) - 1, interval_end(excess, centre, step) - 1,
           confidence};
 }

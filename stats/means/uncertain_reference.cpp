@@ -66,7 +66,6 @@ bool are_exact(std::span<const UncertainReference> references) {
 double log_p_over_references(const LogP& log_p, std::span<const UncertainReference> references) {
   std::vector<double> known;
   for (const UncertainReference& reference : references) {
-    check::finite({"log_p_over_references", "standard error"}, reference.known.standard_error);
     check::non_negative({"log_p_over_references", "standard error"},
                         reference.known.standard_error);
     known.push_back(reference.known.value);
