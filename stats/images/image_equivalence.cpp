@@ -2,14 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <memory>
 #include <numeric>
 #include <span>
 #include <tuple>
 
 #include "stats/basics/check.h"
-#include "stats/basics/moments.h"
 #include "stats/basics/vector_copies.h"
 #include "stats/gates/assumption_gates.h"
 #include "stats/tails/tails.h"
@@ -170,34 +168,6 @@ double covariance(const std::vector<Terms>& values, std::size_t i, std::size_t j
 // its own estimated variance.
 constexpr double reach = 2;
 
-// The parts that errors of elements add to the variances of U and N.
-struct Added {
-  double bias = 0;
-  double norm = 0;
-  double covariance = 0;
-};
-
-struct Element {
-  double mean;           // Mean of the stack.
-  double squared_error;  // Its squared error.
-  double reference;
-  double reference_error;
-};
-
-Added added_by(const Element& x, ElementErrors errors) {
-  const double squared = x.reference_error * x.reference_error;
-  const double difference = x.mean - x.reference;
-  const double noise = x.squared_error + squared;
-  const double bias = errors == ElementErrors::independent
-                          ? std::max(0.0, difference * difference - noise)
-                          : std::pow(std::abs(difference) + reach * std::sqrt(noise), 2);
-  const double norm = std::max(0.0, x.reference * x.reference - squared);
-  const double second_order = 2 * squared * squared;
-  return {.bias = 4 * (bias + x.squared_error) * squared + second_order,
-          .norm = 4 * norm * squared + second_order,
-          .covariance = -4 * difference * x.reference * squared - second_order};
-}
-
 }  // namespace
 
 // Sums over rows are added up in order.
@@ -255,28 +225,30 @@ ImageDistance with_reference_error(ImageDistance distance, const ImagePair& pair
   std::vector<double> m2(mean.size());
   moments_of_range(a, 0, {mean, m2});
   const double count = static_cast<double>(a.images.size());
-  Added sum;
-  Added roots;
+  const bool independent = errors == ElementErrors::independent;
+  double bias = 0, norm = 0, covariance = 0, root_bias = 0, root_norm = 0;
   for (std::size_t i = 0; i < mean.size(); ++i) {
-    const Element element{.mean = mean[i],
-                          .squared_error = m2[i] / (count * (count - 1)),
-                          .reference = b.value[i],
-                          .reference_error = check::reference_error(function, b, i)};
-    const Added added = added_by(element, errors);
-    sum.bias += added.bias;
-    sum.norm += added.norm;
-    sum.covariance += added.covariance;
-    roots.bias += std::sqrt(added.bias);
-    roots.norm += std::sqrt(added.norm);
+    const double error = check::reference_error(function, b, i);
+    const double squared = error * error;
+    const double squared_error = m2[i] / (count * (count - 1));
+    const double difference = mean[i] - b.value[i];
+    const double noise = squared_error + squared;
+    const double square = independent
+                              ? std::max(0.0, difference * difference - noise)
+                              : std::pow(std::abs(difference) + reach * std::sqrt(noise), 2);
+    const double second_order = 2 * squared * squared;
+    const double of_bias = 4 * (square + squared_error) * squared + second_order;
+    const double of_norm =
+        4 * std::max(0.0, b.value[i] * b.value[i] - squared) * squared + second_order;
+    bias += of_bias;
+    norm += of_norm;
+    covariance += -4 * difference * b.value[i] * squared - second_order;
+    root_bias += std::sqrt(of_bias);
+    root_norm += std::sqrt(of_norm);
   }
-  if (errors == ElementErrors::unknown) {
-    sum = {.bias = roots.bias * roots.bias,
-           .norm = roots.norm * roots.norm,
-           .covariance = -roots.bias * roots.norm};
-  }
-  distance.bias_variance += sum.bias;
-  distance.norm_variance += sum.norm;
-  distance.covariance += sum.covariance;
+  distance.bias_variance += independent ? bias : root_bias * root_bias;
+  distance.norm_variance += independent ? norm : root_norm * root_norm;
+  distance.covariance += independent ? covariance : -root_bias * root_norm;
   return distance;
 }
 

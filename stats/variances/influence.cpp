@@ -95,23 +95,19 @@ void check_sample(const char* function, const JointMoments& sample) {
   if (!(highest > least)) check::fail({function, "sum of the highest powers"}, highest, held);
 }
 
-double log_variance_of(const JointMoments& sample) {
-  return std::log(sample.sum(2, 0) / (static_cast<double>(sample.count) - 1));
-}
-
-// Makes the mean of the squared deviations 1.
-double per_mean_square(const JointMoments& sample) {
-  return static_cast<double>(sample.count) / sample.sum(2, 0);
-}
-
-// Adds what the error of the mean adds: to the variance of s2 / sigma^2 its second order, 2 / n^2.
-// The sum of squares Q of psi moves by -4 S d with the mean, S the sum of psi d over that of d^2.
-void add_error_of_mean(const JointMoments& sample, const Coefficients& of, Moments& psi) {
-  constexpr double second_order = 2;
-  psi.m2 += second_order;
-  if (sample.known < weight) return;
+// The variance, whose coefficient of the square makes the mean of the squared deviations 1.
+Influence of_variance(const JointMoments& sample, double cost) {
+  const double n = static_cast<double>(sample.count);
+  const double squares = sample.sum(2, 0);
+  const Coefficients of{.square = n / squares, .cost = cost};
+  Influence influence{.log_value = std::log(squares / (n - 1)), .relative = about_one(sample, of)};
+  // The error of the mean adds to the variance of s2 / sigma^2 its second order, 2 / n^2. The sum
+  // of squares of psi moves by -4 S d with the mean, S the sum of psi d over that of d^2.
+  influence.relative.m2 += 2;
+  if (sample.known < weight) return influence;
   const double products = of.square * sample.sum(3, 0) + of.cost * sample.sum(1, 1);
-  psi.m4 += 16 * products * products / sample.sum(2, 0);
+  influence.relative.m4 += 16 * products * products / squares;
+  return influence;
 }
 
 TestResult deterministic(double log_ratio) {
@@ -143,19 +139,14 @@ Influence influence_of_mean(const Moments& positive) {
 
 Influence influence_of_variance(const JointMoments& sample) {
   check_sample("influence_of_variance", sample);
-  const Coefficients of{.square = per_mean_square(sample)};
-  Influence influence{.log_value = log_variance_of(sample), .relative = about_one(sample, of)};
-  add_error_of_mean(sample, of, influence.relative);
-  return influence;
+  return of_variance(sample, 0);
 }
 
 Influence influence_of_variance_and_cost(const JointMoments& sample) {
   check_sample("influence_of_variance_and_cost", sample);
   check::positive({"influence_of_variance_and_cost", "mean cost"}, sample.of_cost.mean);
-  const Coefficients of{.square = per_mean_square(sample), .cost = 1 / sample.of_cost.mean};
-  Influence influence{.log_value = log_variance_of(sample) + std::log(sample.of_cost.mean),
-                      .relative = about_one(sample, of)};
-  add_error_of_mean(sample, of, influence.relative);
+  Influence influence = of_variance(sample, 1 / sample.of_cost.mean);
+  influence.log_value += std::log(sample.of_cost.mean);
   return influence;
 }
 
