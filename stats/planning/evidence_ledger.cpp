@@ -6,7 +6,6 @@
 
 #include "stats/basics/check.h"
 #include "stats/tails/special.h"
-#include "stats/tails/tails.h"
 
 namespace assay::stats {
 namespace {
@@ -15,16 +14,11 @@ constexpr double prior_ratio = 0.2;  // (tau / a first night's standard error)^2
 // Larger -ln p are taken for this one, so that sums stay finite. A larger p is valid.
 constexpr double largest_minus_log_p = 1e9;
 
-// ln of normal(r; 0, narrow + added) / normal(r; 0, narrow).
-struct Widening {
-  double narrow;
-  double added;
-};
-double log_ratio(double r, Widening variance) {
-  if (!(variance.narrow > 0)) return 0;
-  const double wide = variance.narrow + variance.added;
-  const double curvature = variance.added / variance.narrow / wide;
-  return -std::log1p(variance.added / variance.narrow) / 2 + r * r / 2 * curvature;
+// ln of normal(r; 0, narrow + added) / normal(r; 0, narrow), of variances.
+double log_ratio(double r, double narrow, double added) {
+  if (!(narrow > 0)) return 0;
+  const double relative = added / narrow;
+  return -std::log1p(relative) / 2 + r * r / 2 * (relative / (narrow + added));
 }
 
 double square(double x) { return x * x; }
@@ -49,7 +43,7 @@ double log_change(const PooledNights& before, const PooledNights& after, const N
     expected += slope * (before.difference() - null.value);
     variance -= slope * u2;
   }
-  return log_ratio(after.difference() - expected, {variance, effect_variance});
+  return log_ratio(after.difference() - expected, variance, effect_variance);
 }
 
 ChangePoint change_point_of(const std::vector<double>& logs) {
@@ -106,7 +100,7 @@ double log_e_value(const PooledNights& nights, const NullTheta& null) {
   check::non_negative({"log_e_value", "reference_error"}, null.reference_error);
   if (!nights.speaks()) return 0;
   return log_ratio(nights.difference() - null.value,
-                   {nights.variance() + square(null.reference_error), prior_variance(nights)});
+                   nights.variance() + square(null.reference_error), prior_variance(nights));
 }
 
 void PooledPValues::add(double log_p) {

@@ -5,10 +5,8 @@
 #include <limits>
 #include <numbers>
 
-#include "stats/basics/check.h"
 #include "stats/planning/boundary.h"
 #include "stats/planning/planning.h"
-#include "stats/tails/tails.h"
 
 namespace assay::stats {
 namespace {
@@ -36,19 +34,6 @@ std::vector<double> crossing_levels(const WangTsiatis& boundary, double error, d
     levels.push_back(sides * std::exp(normal_upper(constant * shape)));
   }
   return levels;
-}
-
-std::size_t number_of_looks(LookRange range, double growth) {
-  if (range.first == range.last) return 1;
-  const double span = std::log(static_cast<double>(range.last) / static_cast<double>(range.first));
-  // 1024 = 2^10 is ten doublings, although the logarithms' quotient may round above ten.
-  return 1 + static_cast<std::size_t>(std::ceil(span / std::log(growth) * (1 - rounding)));
-}
-
-std::uint64_t size_at(LookRange range, double fraction) {
-  const double ratio = static_cast<double>(range.last) / static_cast<double>(range.first);
-  return static_cast<std::uint64_t>(
-      std::round(static_cast<double>(range.first) * std::pow(ratio, fraction)));
 }
 
 double log_p_of_scores(const LookSchedule& schedule, std::span<const double> log_p,
@@ -90,10 +75,13 @@ std::vector<std::uint64_t> geometric_sizes(LookRange range, double growth) {
   if (!(growth > 1) || std::isinf(growth)) {
     check::fail({"geometric_sizes", "growth"}, growth, "finite and above 1");
   }
-  const std::size_t looks = number_of_looks(range, growth);
+  const double first = static_cast<double>(range.first);
+  const double ratio = static_cast<double>(range.last) / first;
+  // 1024 = 2^10 is ten doublings, although the logarithms' quotient may round above ten.
+  const double steps = std::ceil(std::log(ratio) / std::log(growth) * (1 - rounding));
   std::vector<std::uint64_t> sizes;
-  for (std::size_t k = 0; k + 1 < looks; ++k) {
-    const auto size = size_at(range, static_cast<double>(k) / static_cast<double>(looks - 1));
+  for (double k = 0; k < steps; ++k) {
+    const auto size = static_cast<std::uint64_t>(std::round(first * std::pow(ratio, k / steps)));
     if (size >= range.last) break;
     if (sizes.empty() || size > sizes.back()) sizes.push_back(size);
   }

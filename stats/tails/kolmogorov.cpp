@@ -16,39 +16,25 @@ namespace {
 
 // ---- One-sided, Birnbaum & Tingey: d sum_j C(n, j) (d + j/n)^(j-1) (1 - d - j/n)^(n-j)
 
-struct OneSidedTerm {
-  double n;
-  double d;
-
-  // ln of term j without the leading d. In deviance form, with x = j/n, the powers and the binomial
-  // coefficient are e^(-n KL(x || x + d)) up to Stirling's errors.
-  double operator()(double j) const {
-    const double x = j / n;
-    const double up = x + d;
-    const double down = 1 - up;
-    if (j == 0) return n * std::log1p(-d) - std::log(d);
-    if (!(down > 0)) return special::lowest_log();
-    const double rest = n - j;
-    const double binomial = special::stirling_error(n) - special::stirling_error(j) -
-                            special::stirling_error(rest) -
-                            0.5 * std::log(2 * std::numbers::pi * j * (rest / n));
-    // Ratios are (j/n + d) / (j/n) and (1 - x - d) / (1 - x). Their linear parts n d cancel.
-    return binomial + special::log_deviance(j, 1 + d / x) +
-           special::log_deviance(rest, 1 - d / (1 - x)) - std::log(up);
-  }
-};
+// ln of term j without the leading d. In deviance form, with x = j/n, the powers and the binomial
+// coefficient are e^(-n KL(x || x + d)) up to Stirling's errors.
+double log_one_sided_term(double n, double d, double j) {
+  const double x = j / n;
+  const double up = x + d;
+  if (j == 0) return n * std::log1p(-d) - std::log(d);
+  if (!(1 - up > 0)) return special::lowest_log();
+  const double rest = n - j;
+  const double binomial = special::stirling_error(n) - special::stirling_error(j) -
+                          special::stirling_error(rest) -
+                          0.5 * std::log(2 * std::numbers::pi * j * (rest / n));
+  // Ratios are (j/n + d) / (j/n) and (1 - x - d) / (1 - x). Their linear parts n d cancel.
+  return binomial + special::log_deviance(j, 1 + d / x) +
+         special::log_deviance(rest, 1 - d / (1 - x)) - std::log(up);
+}
 
 // From here on the sum takes every s-th term times s. The terms are a smooth function of j that
 // vanishes with all derivatives at both ends. So it converges faster than any power.
 constexpr double densest_sum = 4000;
-
-double log_one_sided_sum(const OneSidedTerm& term, double last) {
-  const double stride = last < 2 * densest_sum ? 1 : std::floor(last / densest_sum);
-  std::vector<double> logs;
-  logs.reserve(static_cast<std::size_t>(last / stride) + 1);
-  for (double j = 0; j <= last; j += stride) logs.push_back(term(j));
-  return special::log_sum_of(logs) + std::log(stride);
-}
 
 // ---- Durbin
 
@@ -172,27 +158,6 @@ constexpr double pi2 = std::numbers::pi * std::numbers::pi;
 constexpr double pi4 = pi2 * pi2;
 constexpr double pi6 = pi4 * pi2;
 
-// The four sums, accumulated over k. Terms are symmetric in k, hence the factors two.
-struct Terms {
-  double k0 = 0;
-  double k1 = 0;
-  double k2 = 0;
-  double k3 = 0;
-};
-
-// Half-integer terms: c = (k + 1/2)^2.
-void add_half_integer(Terms& terms, double z2, double k) {
-  const double z4 = z2 * z2;
-  const double z6 = z4 * z2;
-  const double c = (k + 0.5) * (k + 0.5);
-  const double weight = 2 * std::exp(-pi2 * c / (2 * z2));
-  terms.k0 += weight;
-  terms.k1 += weight * (pi2 * c - z2);
-  terms.k2 += weight * (6 * z6 + 2 * z4 + pi2 * (2 * z4 - 5 * z2) * c + pi4 * (1 - 2 * z2) * c * c);
-  terms.k3 += weight * (pi6 * c * c * c * (5 - 30 * z2) + pi4 * c * c * (-60 * z2 + 212 * z4) +
-                        pi2 * c * (135 * z4 - 96 * z6) - 30 * z6 - 90 * z4 * z4);
-}
-
 // P(D <= d) by the expansion K0(z) + K1(z) / n^(1/2) + K2(z) / n + K3(z) / n^(3/2) at z =
 // sqrt(n) d. (Pelz & Good, JRSS B 38 (1976) 152, equations 6 to 10.) Absolute error of order n^-2.
 double pelz_good_lower(double distance, std::uint64_t n) {
@@ -200,23 +165,30 @@ double pelz_good_lower(double distance, std::uint64_t n) {
   const double z = root * distance;
   const double z2 = z * z;
   const double z3 = z2 * z;
-  Terms half;
-  double whole2 = 0;
-  double whole3 = 0;
+  const double z4 = z2 * z2;
+  const double z6 = z4 * z2;
+  // Terms are symmetric in k, hence the factors two.
+  double half0 = 0, half1 = 0, half2 = 0, half3 = 0, whole2 = 0, whole3 = 0;
   // exp(-pi^2 k^2 / (2 z^2)) < 1e-20 beyond this.
   const double last = std::ceil(z * 3.1) + 1;
   for (double k = 0; k <= last; ++k) {
-    add_half_integer(half, z2, k);
-    const double c = k * k;
+    const double c = (k + 0.5) * (k + 0.5);
     const double weight = 2 * std::exp(-pi2 * c / (2 * z2));
-    whole2 += weight * pi2 * c;
-    whole3 += weight * (3 * pi2 * c * z2 - pi4 * c * c);
+    half0 += weight;
+    half1 += weight * (pi2 * c - z2);
+    half2 += weight * (6 * z6 + 2 * z4 + pi2 * (2 * z4 - 5 * z2) * c + pi4 * (1 - 2 * z2) * c * c);
+    half3 += weight * (pi6 * c * c * c * (5 - 30 * z2) + pi4 * c * c * (-60 * z2 + 212 * z4) +
+                       pi2 * c * (135 * z4 - 96 * z6) - 30 * z6 - 90 * z4 * z4);
+    const double d = k * k;
+    const double of_whole = 2 * std::exp(-pi2 * d / (2 * z2));
+    whole2 += of_whole * pi2 * d;
+    whole3 += of_whole * (3 * pi2 * d * z2 - pi4 * d * d);
   }
   const double factor = std::sqrt(std::numbers::pi / 2);
-  const double k0 = half.k0 * std::sqrt(2 * std::numbers::pi) / (2 * z);
-  const double k1 = factor * half.k1 / (6 * z2 * z2);
-  const double k2 = factor * (half.k2 / (72 * z3 * z3 * z) - whole2 / (36 * z3));
-  const double k3 = factor * (half.k3 / (6480 * z3 * z3 * z3 * z) + whole3 / (216 * z3 * z3));
+  const double k0 = half0 * std::sqrt(2 * std::numbers::pi) / (2 * z);
+  const double k1 = factor * half1 / (6 * z2 * z2);
+  const double k2 = factor * (half2 / (72 * z3 * z3 * z) - whole2 / (36 * z3));
+  const double k3 = factor * (half3 / (6480 * z3 * z3 * z3 * z) + whole3 / (216 * z3 * z3));
   return std::clamp(k0 + (k1 + (k2 + k3 / root) / root) / root, 0.0, 1.0);
 }
 
@@ -276,8 +248,11 @@ double log_smirnov_one_sided(double distance, std::uint64_t n) {
   if (distance == 0) return 0;
   if (distance == 1) return special::lowest_log();
   const double size = static_cast<double>(n);
-  const double last = std::floor(size * (1 - distance));
-  const double log_sum = log_one_sided_sum({size, distance}, std::min(last, size - 1));
+  const double last = std::min(std::floor(size * (1 - distance)), size - 1);
+  const double stride = last < 2 * densest_sum ? 1 : std::floor(last / densest_sum);
+  std::vector<double> logs;
+  for (double j = 0; j <= last; j += stride) logs.push_back(log_one_sided_term(size, distance, j));
+  const double log_sum = special::log_sum_of(logs) + std::log(stride);
   return special::clamp_log(std::log(distance) + log_sum);
 }
 

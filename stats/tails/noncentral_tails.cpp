@@ -5,7 +5,6 @@
 #include "stats/basics/check.h"
 #include "stats/basics/search.h"
 #include "stats/tails/special.h"
-#include "stats/tails/tails.h"
 
 namespace assay::stats {
 namespace {

@@ -79,18 +79,17 @@ double mass_below(double t, double mass, const Slopes& slopes) {
   return sum;
 }
 
-double mass_below(double t, const Spread& spread) {
-  return mass_below(t, spread.mass.value, spread.slopes);
-}
-
 // The distance between a part's law inside it and that of its halves.
 double largest_distance(const Spread& whole, const Spread& first, const Spread& second) {
+  const auto below = [](double t, const Spread& of) {
+    return mass_below(t, of.mass.value, of.slopes);
+  };
   double largest = 0;
   for (int k = 1; k <= places_compared; ++k) {
     const double t = 2.0 * k / (places_compared + 1) - 1;
     const double by_halves =
-        t <= 0 ? mass_below(2 * t + 1, first) : first.mass.value + mass_below(2 * t - 1, second);
-    largest = std::max(largest, std::abs(by_halves - mass_below(t, whole)));
+        t <= 0 ? below(2 * t + 1, first) : first.mass.value + below(2 * t - 1, second);
+    largest = std::max(largest, std::abs(by_halves - below(t, whole)));
   }
   return largest;
 }
@@ -113,16 +112,16 @@ class Table {
   Table(const AdaptiveQuadrature::Function& density, AdaptiveQuadrature& rule)
       : density_(density), rule_(rule) {}
 
-  void add(Span span) { add(span, spread(span), {}); }
+  void add(Span span) { add(span, spread(span), 0, 0); }
 
   void refine() {
     while (parts_.front().badness > 1 && !rule_.exhausted()) {
       std::pop_heap(parts_.begin(), parts_.end());
       const Part part = parts_.back();
       parts_.pop_back();
-      const Inherited inherited{part.departure / 4, part.depth + 1};
-      add({part.span.low, part.span.middle()}, part.first, inherited);
-      add({part.span.middle(), part.span.high}, part.second, inherited);
+      const auto [low, high] = part.span.halves();
+      add(low, part.first, part.departure / 4, part.depth + 1);
+      add(high, part.second, part.departure / 4, part.depth + 1);
     }
   }
 
@@ -142,23 +141,17 @@ class Table {
   }
 
  private:
-  // Departure of the part that this is a half of. Two halves that agree by luck do so once.
-  struct Inherited {
-    double departure = 0;
-    int depth = 0;
-  };
-
   Spread spread(Span span) { return {rule_.sampled(density_, span), span.width()}; }
 
-  void add(Span span, const Spread& whole, Inherited from) {
-    Part part{.span = span,
-              .first = spread({span.low, span.middle()}),
-              .second = spread({span.middle(), span.high}),
-              .depth = from.depth};
+  // Part of the departure is inherited from the part that this is a half of. Two halves that agree
+  // by luck do so once.
+  void add(Span span, const Spread& whole, double inherited, int depth) {
+    const auto [low, high] = span.halves();
+    Part part{.span = span, .first = spread(low), .second = spread(high), .depth = depth};
     const Integral sum = part.first.mass + part.second.mass;
     part.error = std::max(std::abs(sum.value - whole.mass.value), sum.error);
     const double seen = largest_distance(whole, part.first, part.second);
-    part.departure = std::max(seen + part.first.unseen + part.second.unseen, from.departure);
+    part.departure = std::max(seen + part.first.unseen + part.second.unseen, inherited);
     if (part.depth < deepest_bisection) {
       part.badness =
           std::max(part.departure / largest_departure, part.error / rule_.limits().tolerance);

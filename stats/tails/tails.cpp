@@ -3,10 +3,8 @@
 #include <algorithm>
 #include <boost/math/special_functions/beta.hpp>
 #include <boost/math/special_functions/gamma.hpp>
-#include <cmath>
 #include <limits>
 #include <numbers>
-#include <utility>
 
 #include "stats/basics/check.h"
 #include "stats/basics/search.h"
@@ -195,7 +193,7 @@ constexpr double most_central_square = 4;
 }  // namespace
 
 TestResult without_error(double difference, const char* law) {
-  constexpr double impossible = std::numeric_limits<double>::lowest();
+  const double impossible = special::lowest_log();
   return {difference, {law, {}}, difference < 0 ? impossible : 0, difference > 0 ? impossible : 0};
 }
 
