@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "reports/record/record.h"
-#include "stats/basics/gate.h"
+#include "stats/gates/assumption_gates.h"
 
 namespace assay::harness {
 

@@ -1,9 +1,7 @@
 #include "stats/basics/search.h"
 
-#include <algorithm>
 #include <boost/math/tools/minima.hpp>
 #include <boost/math/tools/toms748_solve.hpp>
-#include <numeric>
 
 namespace assay::stats {
 

@@ -118,11 +118,11 @@ class CellQuadrature {
   double densest_ = 0;
 };
 
-void check_ascending(const std::vector<double>& borders) {
-  check::at_least({"PlaneGrid", "number of borders"}, borders.size(), 2);
-  for (std::size_t i = 1; i < borders.size(); ++i) {
-    if (!(borders[i - 1] < borders[i]))
-      check::fail({"PlaneGrid", "border"}, borders[i], "ascending");
+void check_borders(const PlaneGrid& grid) {
+  for (const std::vector<double>* borders : {&grid.x_borders, &grid.y_borders}) {
+    check::at_least({"PlaneGrid", "number of borders"}, borders->size(), 2);
+    const auto falling = std::ranges::adjacent_find(*borders, std::not_fn(std::less()));
+    if (falling != borders->end()) check::fail({"PlaneGrid", "border"}, falling[1], "ascending");
   }
 }
 
@@ -147,11 +147,6 @@ double densest_beside(const PlaneGrid& grid, const std::vector<double>& densest,
     }
   }
   return most;
-}
-
-void check_borders(const PlaneGrid& grid) {
-  check_ascending(grid.x_borders);
-  check_ascending(grid.y_borders);
 }
 
 // Integral of the density over every cell. If a cell shows no density at its nodes but a neighbour

@@ -211,6 +211,12 @@ double deviation_of_sum(std::span<const double> scores, std::size_t first) {
   return variance > 0 ? std::abs(sum) / std::sqrt(variance) : 0;
 }
 
+// It is never red: another method takes the place of the one it would allow.
+Gate of_choice(const char* name, double value, double limit) {
+  const GateState state = value <= limit ? GateState::green : GateState::amber;
+  return {.name = name, .value = value, .low = value, .limit = limit, .state = state};
+}
+
 }  // namespace
 
 double normal_skewness_quantile(double n, double probability) {
@@ -240,12 +246,7 @@ Gate near_normal_gate(const Moments& pilot, double averaged) {
   const double value = std::abs(pilot.skewness()) / root;
   const double allowance =
       normal_skewness_quantile(static_cast<double>(pilot.count), unlikely) / root;
-  const double limit = std::max(near_normal, allowance);
-  return {.name = "skewness of an observation",
-          .value = value,
-          .low = value,
-          .limit = limit,
-          .state = value <= limit ? GateState::green : GateState::amber};
+  return of_choice("skewness of an observation", value, std::max(near_normal, allowance));
 }
 
 Gate small_kurtosis_gate(const Moments& pilot, double averaged, double limit) {
@@ -253,11 +254,7 @@ Gate small_kurtosis_gate(const Moments& pilot, double averaged, double limit) {
   const double upper = pilot.count >= fewest_with_kurtosis
                            ? kurtosis_upper_limit(pilot) / averaged
                            : std::numeric_limits<double>::infinity();
-  return {.name = "upper limit of the excess kurtosis",
-          .value = upper,
-          .low = upper,
-          .limit = limit,
-          .state = upper <= limit ? GateState::green : GateState::amber};
+  return of_choice("upper limit of the excess kurtosis", upper, limit);
 }
 
 double kurtosis_limit_at(double critical_value) {

@@ -144,30 +144,6 @@ void merge(Group& group, const Group& other) {
   }
 }
 
-// The values of one element in all images, and their scores.
-class Element {
- public:
-  explicit Element(std::size_t images) : values_(images) {}
-
-  std::span<double> values() { return values_; }
-  void score() {
-    auto& [value, rank, spread] = scores_;
-    value = values_;
-    standardise(value);
-    midranks(std::span<const double>(values_), order_, rank);
-    standardise(rank);
-    spread = rank;
-    for (double& each : spread) each *= each;
-    standardise(spread);
-  }
-  std::span<const double> by(std::size_t score) const { return scores_[score]; }
-
- private:
-  std::vector<double> values_;
-  std::vector<Placed<double>> order_;
-  std::array<std::vector<double>, element_scores> scores_;
-};
-
 struct Place {
   std::size_t x;
   std::size_t y;
@@ -226,17 +202,25 @@ class Pooled {
                .y = at.y};
       cells.images.assign(images_.size(), std::vector<float>(cells.count()));
     }
-    Element element(images_.size());
+    // Of one element in all images.
+    std::vector<Placed<double>> order;
+    std::array<std::vector<double>, element_scores> by;
+    auto& [value, rank, spread] = by;
+    value.resize(images_.size());
     for (std::size_t i = 0; i < all[0].count(); ++i) {
       const std::size_t x = at.x + i % all[0].width;
       const std::size_t y = at.y + i / all[0].width;
       const std::size_t index = (y * extent_.width + x) * extent_.channels + at.channel;
-      for (std::size_t r = 0; r < images_.size(); ++r) element.values()[r] = images_[r][index];
-      element.score();
+      for (std::size_t r = 0; r < images_.size(); ++r) value[r] = images_[r][index];
+      midranks(std::span<const double>(value), order, rank);
+      standardise(value);
+      standardise(rank);
+      spread = rank;
+      for (double& each : spread) each *= each;
+      standardise(spread);
       for (std::size_t s = 0; s < element_scores; ++s) {
-        const std::span<const double> scored = element.by(s);
-        for (std::size_t r = 0; r < scored.size(); ++r) {
-          all[s].images[r][i] = static_cast<float>(scored[r]);
+        for (std::size_t r = 0; r < images_.size(); ++r) {
+          all[s].images[r][i] = static_cast<float>(by[s][r]);
         }
       }
     }
@@ -248,13 +232,11 @@ class Pooled {
   std::vector<std::span<const float>> images_;
 };
 
-std::size_t level_of(std::size_t side) { return static_cast<std::size_t>(std::countr_zero(side)); }
-
 // Looks at cells of this size and larger ones, up to `last`, and returns those.
 Cells look_upward(Cells cells, std::size_t last, const Labels& labels, std::size_t channel,
                   std::vector<Group>& groups) {
   for (;;) {
-    const std::size_t level = level_of(cells.side);
+    const auto level = static_cast<std::size_t>(std::countr_zero(cells.side));
     if (groups.size() <= level) groups.resize(level + 1);
     look_at(cells, labels, channel, groups[level]);
     if (cells.side >= last || cells.count() == 1) return cells;
