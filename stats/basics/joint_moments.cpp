@@ -111,17 +111,6 @@ Moments moments_of(const JointMoments& joint, const JointMoments::Coordinate& co
           .rest = coordinate.rest};
 }
 
-double distance(const JointMoments::Coordinate& from, const JointMoments::Coordinate& to) {
-  return (to.mean - from.mean) + (to.rest - from.rest);
-}
-
-void merge_coordinate(JointMoments::Coordinate& ours, const JointMoments::Coordinate& theirs,
-                      double step) {
-  ours.move_mean(step);
-  ours.minimum = std::min(ours.minimum, theirs.minimum);
-  ours.maximum = std::max(ours.maximum, theirs.maximum);
-}
-
 }  // namespace
 
 void JointMoments::Coordinate::move_mean(double step) { move_compensated(step, mean, rest); }
@@ -134,20 +123,22 @@ void JointMoments::merge(const JointMoments& other) {
   }
   const double here = static_cast<double>(count);
   const double there = static_cast<double>(other.count);
-  const double dx = distance(of_x, other.of_x);
-  const double dc = distance(of_cost, other.of_cost);
   const double share = there / (here + there);
   Sums theirs = other.sums;
-  move_origin(sums, Along::x, -dx * share);
-  move_origin(sums, Along::cost, -dc * share);
-  move_origin(theirs, Along::x, dx * (1 - share));
-  move_origin(theirs, Along::cost, dc * (1 - share));
+  const auto merge_along = [&](Along along, Coordinate& ours, const Coordinate& coordinate) {
+    const double step = (coordinate.mean - ours.mean) + (coordinate.rest - ours.rest);
+    move_origin(sums, along, -step * share);
+    move_origin(theirs, along, step * (1 - share));
+    ours.move_mean(step * share);
+    ours.minimum = std::min(ours.minimum, coordinate.minimum);
+    ours.maximum = std::max(ours.maximum, coordinate.maximum);
+  };
+  merge_along(Along::x, of_x, other.of_x);
+  merge_along(Along::cost, of_cost, other.of_cost);
   for (std::size_t k = 0; k < sums.size(); ++k) sums[k] += theirs[k];
   // The deviations sum to zero by definition.
   sums[at_powers(1, 0)] = 0;
   sums[at_powers(0, 1)] = 0;
-  merge_coordinate(of_x, other.of_x, dx * share);
-  merge_coordinate(of_cost, other.of_cost, dc * share);
   count += other.count;
   known = std::min(known, other.known);
 }

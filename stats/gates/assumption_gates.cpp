@@ -123,26 +123,19 @@ constexpr double most_steps = 0x1p20;
 // In steps. Values written with a fixed number of decimals are off their lattice by rounding.
 constexpr double tolerance = 0.01;
 
-double smallest_gap(std::span<const double> sorted) {
-  double smallest = std::numeric_limits<double>::infinity();
-  for (std::size_t i = 1; i < sorted.size(); ++i) {
-    const double gap = sorted[i] - sorted[i - 1];
-    if (gap > 0 && gap < smallest) smallest = gap;
-  }
-  return smallest;
-}
-
 bool is_lattice(std::span<const double> sorted) {
-  const double gap = smallest_gap(sorted);
+  double gap = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 1; i < sorted.size(); ++i) {
+    if (sorted[i] > sorted[i - 1]) gap = std::min(gap, sorted[i] - sorted[i - 1]);
+  }
   const double range = sorted.back() - sorted.front();
   if (!(range / gap <= most_steps)) return false;
   // The mean step, because one gap alone is known to rounding only.
   const double steps = std::round(range / gap);
-  for (const double value : sorted) {
+  return std::ranges::all_of(sorted, [&](double value) {
     const double position = (value - sorted.front()) / range * steps;
-    if (std::abs(position - std::round(position)) > tolerance) return false;
-  }
-  return true;
+    return !(std::abs(position - std::round(position)) > tolerance);
+  });
 }
 
 double tie_probability(std::span<const double> sorted) {

@@ -91,21 +91,6 @@ namespace {
 // Standard errors above estimates of the noise.
 constexpr double errors_above = 2;
 
-// The squared distance that `n` images exclude.
-double excluded_square(const ImageNoise& noise, double beta, double n) {
-  if (!(noise.root > 0)) return 0;
-  const double degrees = std::pow(noise.trace / noise.root, 2);
-  const double t = -student_t_quantile({Tail::lower, std::log(beta)}, n - 1);
-  const double square = chi_square_quantile({Tail::upper, std::log(beta)}, degrees);
-  return noise.root / std::sqrt(degrees) / n * (square - degrees + 2 * t * std::sqrt(square));
-}
-
-// The same of a distance between the whole images' means.
-double excluded_distance(const ImageNoise& noise, double beta, double n) {
-  const double t = -student_t_quantile({Tail::lower, std::log(beta)}, n - 1);
-  return (t + upper_normal_quantile(beta / 2)) * std::sqrt(noise.of_mean / n);
-}
-
 }  // namespace
 
 void ImageNoise::add(const ImageNoise& side, double square, double averaged) {
@@ -137,13 +122,19 @@ std::uint64_t image_sample_size(const ImageNoise& noise, const ImageMargins& mar
   const double room = (detect * detect - allow * allow) * unit;
   const double room_of_mean = (detect - allow) * std::sqrt(unit);
   if (!(room > 0)) return most;
+  const bool noisy = noise.root > 0;
+  const double degrees = noisy ? std::pow(noise.trace / noise.root, 2) : 1;
+  const double square = chi_square_quantile({Tail::upper, std::log(beta)}, degrees);
+  const double z = upper_normal_quantile(beta / 2);
   std::uint64_t count = least_replicates;
   while (count < most) {
     const auto n = static_cast<double>(count);
-    if (excluded_square(noise, beta, n) <= room &&
-        excluded_distance(noise, beta, n) <= room_of_mean) {
-      break;
-    }
+    const double t = -student_t_quantile({Tail::lower, std::log(beta)}, n - 1);
+    // The squared distance that n images exclude, and the distance between whole images' means.
+    const double excluded =
+        noise.root / std::sqrt(degrees) / n * (square - degrees + 2 * t * std::sqrt(square));
+    const double of_mean = (t + z) * std::sqrt(noise.of_mean / n);
+    if ((!noisy || excluded <= room) && of_mean <= room_of_mean) break;
     count += count / 8 + 1;
   }
   return std::min(count, most);

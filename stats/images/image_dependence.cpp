@@ -191,10 +191,6 @@ std::vector<Scores> scored(const std::vector<std::vector<std::vector<float>>>& s
   return sides;
 }
 
-double correlation(const std::vector<float>& a, const std::vector<float>& b) {
-  return dot(a, b) / static_cast<double>(a.size());
-}
-
 // The mean correlation of pairs whose indices differ by `apart`, if it departs by too many errors
 // from that of pairs a little further apart.
 std::optional<double> departure(const Scores& a, const Scores& b, std::size_t apart) {
@@ -203,7 +199,7 @@ std::optional<double> departure(const Scores& a, const Scores& b, std::size_t ap
   for (std::size_t i = 0; i < a.size(); ++i) {
     const std::size_t first = apart > 0 ? i + apart : i - std::min(i, most_apart);
     for (std::size_t j = first; j < std::min(i + most_apart, b.size()); ++j) {
-      (j == i + apart ? near : others).add(correlation(a[i], b[j]));
+      (j == i + apart ? near : others).add(dot(a[i], b[j]) / static_cast<double>(a[i].size()));
     }
   }
   if (near.count < 2 || others.count < 2) return {};

@@ -28,36 +28,27 @@ struct Part {
 
 struct Combination {
   std::vector<Part> parts;
-  double reference_error = 0;
+  double standard_error = 0;
   double degrees = 0;
-
-  double standard_error() const {
-    double variance = reference_error * reference_error;
-    for (const Part& part : parts) {
-      variance += part.factor * part.factor * part.x.variance() / part.count();
-    }
-    return std::sqrt(variance);
-  }
-  // The skewness of the combined mean over 6.
-  double a() const {
-    double skewness = 0;
-    for (const auto& [x, factor, share] : parts) {
-      const double weight = share * std::sqrt(share / static_cast<double>(x.count));
-      if (x.m2 > 0) skewness += std::copysign(weight, factor) * x.skewness();
-    }
-    return skewness / 6;
-  }
+  double a = 0;  // The skewness of the combined mean over 6.
 };
 
 // `plain` is the test without the correction, which has checked its arguments.
 Combination combination(std::vector<Part> parts, double reference_error, const TestResult& plain) {
-  double sum = reference_error * reference_error;
+  double variance = reference_error * reference_error;
+  double sum = variance;
   for (Part& part : parts) {
+    variance += part.factor * part.factor * part.x.variance() / part.count();
     part.share = part.factor * part.factor * (part.x.m2 / part.count()) / part.count();
     sum += part.share;
   }
-  for (Part& part : parts) part.share /= sum;
-  return {std::move(parts), reference_error, plain.distribution.parameters[0]};
+  double skewness = 0;
+  for (Part& part : parts) {
+    part.share /= sum;
+    const double weight = part.share * std::sqrt(part.share / part.count());
+    if (part.x.m2 > 0) skewness += std::copysign(weight, part.factor) * part.x.skewness();
+  }
+  return {std::move(parts), std::sqrt(variance), plain.distribution.parameters[0], skewness / 6};
 }
 
 Combination combination(const char* caller, const Moments& x, Reference reference) {
@@ -69,8 +60,8 @@ Combination combination(const char* caller, const Moments& x, const Moments& y, 
 }
 
 TestResult result_of(const char* caller, double difference, const Combination& means) {
-  const double t = difference / means.standard_error();
-  const double h = without_skewness(t, means.a());
+  const double t = difference / means.standard_error;
+  const double h = without_skewness(t, means.a);
   check::finite({caller, "transformed statistic"}, h);
   const LogTails plain = student_t_tails(t, means.degrees);
   const LogTails corrected = student_t_tails(h, means.degrees);
@@ -94,7 +85,7 @@ double level_factor(const Combination& means, double x, double (*excess_kurtosis
     e += each;
     f += each * part.share / part.count();
   }
-  const double a = std::abs(means.a());
+  const double a = std::abs(means.a);
   const double cube = x * x * x;
   const double even = std::max(0.0, x * cube * (k / 4 - 44 * a * a / 3));
   const double odd = a * cube * (16.5 * e + 121.5 * a * a) * (1 + x * x / 24);

@@ -133,15 +133,15 @@ double log_lower(double shape, double x) {
 // The fraction takes about sqrt(min(alpha, beta)) terms near the mean, 70 at this bound.
 constexpr double most_for_fraction = 1e4;
 
-// The fraction 1 / (b0 + a1 / (b1 + a2 / (b2 + …))) of Didonato & Morris (1992), equation 9. It
+// By the fraction 1 / (b0 + a1 / (b1 + a2 / (b2 + …))) of Didonato & Morris (1992), equation 9. It
 // takes two steps of DLMF 8.17.22 in one.
-double beta_fraction(BetaPoint point, BetaShape shape) {
+double log_by_fraction(BetaPoint point, BetaShape shape) {
   const auto [a, b] = shape;
   const auto [x, y] = point;
   const double lambda = a * y - b * x;
   double reciprocal = 1 / (a + 1);
   Convergents fraction{.now = a * (lambda + 1) * reciprocal};
-  return fraction.reciprocal_of_all(1e5, [&](double n) {
+  const double value = fraction.reciprocal_of_all(1e5, [&](double n) {
     const double next = 1 / (a + 2 * n + 1);
     const double r = x * reciprocal;
     const double left = n * (b - n) * r;
@@ -150,10 +150,7 @@ double beta_fraction(BetaPoint point, BetaShape shape) {
     reciprocal = next;
     return std::pair(numerator, denominator);
   });
-}
-
-double log_by_fraction(BetaPoint point, BetaShape shape) {
-  return special::log_beta_prefix(shape, point) + std::log(beta_fraction(point, shape));
+  return special::log_beta_prefix(shape, point) + std::log(value);
 }
 
 // ln I_x(a, b) for x at or below the mean.

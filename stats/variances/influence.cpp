@@ -49,12 +49,6 @@ struct Coefficients {
   double cost = 0;
 };
 
-double largest_square(const JointMoments& sample, const Coefficients& of) {
-  const auto value = [&](double d) { return of.square * d * d + of.linear * d; };
-  const double mean = sample.of_x.mean;
-  return std::max(value(sample.of_x.maximum - mean), value(sample.of_x.minimum - mean));
-}
-
 // Moments of 1 + psi less its mean. The extremes are bounds.
 Moments about_one(const JointMoments& sample, const Coefficients& of) {
   const double n = static_cast<double>(sample.count);
@@ -73,9 +67,14 @@ Moments about_one(const JointMoments& sample, const Coefficients& of) {
   }
   const double dearest = of.cost * (sample.of_cost.maximum - sample.of_cost.mean);
   const double cheapest = of.cost * (sample.of_cost.minimum - sample.of_cost.mean);
+  const auto square_of = [&](double x) {
+    const double d = x - sample.of_x.mean;
+    return of.square * d * d + of.linear * d;
+  };
+  const double largest = std::max(square_of(sample.of_x.maximum), square_of(sample.of_x.minimum));
   // The least square deviation is 0, or that of a truth between the values.
   const double least = of.linear == 0 ? 0 : -of.linear * of.linear / (4 * of.square);
-  moments.maximum = 1 - mean + largest_square(sample, of) + dearest;
+  moments.maximum = 1 - mean + largest + dearest;
   moments.minimum = 1 - mean + least + cheapest;
   return moments;
 }
