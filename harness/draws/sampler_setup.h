@@ -17,7 +17,7 @@
 #include "estimators/sampler.h"
 #include "estimators/stream.h"
 #include "harness/draws/draw_cells.h"
-#include "stats/tails/tabulated_law.h"
+#include "stats/basics/adaptive_quadrature.h"
 
 namespace assay::harness {
 

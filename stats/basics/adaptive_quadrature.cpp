@@ -7,11 +7,16 @@
 #include <limits>
 
 #include "stats/basics/check.h"
+#include "stats/basics/scores.h"
 
 namespace assay::stats {
 namespace {
 
-using Rule = boost::math::quadrature::gauss<double, AdaptiveQuadrature::nodes>;
+constexpr std::size_t nodes = AdaptiveQuadrature::nodes;
+using Rule = boost::math::quadrature::gauss<double, nodes>;
+
+// Share of a part that lies beyond the outermost node, on one side.
+constexpr double blind_share = 0.0255;
 
 // The ends of a part are looked at this far inside, in units of its width. So borders of panels lie
 // outside, rounding included.
@@ -19,26 +24,16 @@ constexpr double nudge = 1e-9;
 // A jump of J in a part makes its halves err by up to .105 J times the width. The polynomials
 // through their nodes depart from the density at the ends. That departure times blind_share may be
 // as little as a ninth of the error.
-constexpr double jump_share = 9 * AdaptiveQuadrature::blind_share;
+constexpr double jump_share = 9 * blind_share;
 // Halving leaves a part at 0 next to a pole x^-a however deep. There the rule misses less than this
 // multiple of its result, up to a = .94. The density at the end tells nothing of it.
 constexpr double most_of_a_pole = 16;
-constexpr std::size_t low_end = AdaptiveQuadrature::nodes;
+constexpr std::size_t low_end = nodes;
 constexpr std::size_t high_end = low_end + 1;
 
-AdaptiveQuadrature::Places places_in(Span span) {
-  AdaptiveQuadrature::Places places;
-  const double half = span.width() / 2;
-  std::transform(AdaptiveQuadrature::node_places().begin(), AdaptiveQuadrature::node_places().end(),
-                 places.begin(), [&](double node) { return span.middle() + half * node; });
-  places[low_end] = span.low + nudge * span.width();
-  places[high_end] = span.high - nudge * span.width();
-  return places;
-}
-
 // Numbers of all nodes, in their order, from those of the nodes at or above 0.
-std::array<double, AdaptiveQuadrature::nodes> on_both_sides(const auto& upper, double sign) {
-  std::array<double, AdaptiveQuadrature::nodes> all{upper[0]};
+std::array<double, nodes> on_both_sides(const auto& upper, double sign) {
+  std::array<double, nodes> all{upper[0]};
   for (std::size_t i = 1; i < upper.size(); ++i) {
     all[2 * i - 1] = sign * upper[i];
     all[2 * i] = upper[i];
@@ -46,17 +41,33 @@ std::array<double, AdaptiveQuadrature::nodes> on_both_sides(const auto& upper, d
   return all;
 }
 
-const std::array<double, AdaptiveQuadrature::nodes>& node_weights() {
+// The nodes in [-1, 1].
+const std::array<double, nodes>& node_places() {
+  static const auto places = on_both_sides(Rule::abscissa(), -1);
+  return places;
+}
+
+const std::array<double, nodes>& node_weights() {
   static const auto weights = on_both_sides(Rule::weights(), 1);
   return weights;
 }
 
+AdaptiveQuadrature::Places places_in(Span span) {
+  AdaptiveQuadrature::Places places;
+  const double half = span.width() / 2;
+  std::transform(node_places().begin(), node_places().end(), places.begin(),
+                 [&](double node) { return span.middle() + half * node; });
+  places[low_end] = span.low + nudge * span.width();
+  places[high_end] = span.high - nudge * span.width();
+  return places;
+}
+
 // Weights of the values at the nodes for the polynomial's value at the part's lower end. The nodes
 // lie symmetrically, so those at t stand for -t at the upper end.
-const std::array<double, AdaptiveQuadrature::nodes>& weights_at_end() {
-  static const std::array<double, AdaptiveQuadrature::nodes> weights = [] {
-    const auto& t = AdaptiveQuadrature::node_places();
-    std::array<double, AdaptiveQuadrature::nodes> all{};
+const std::array<double, nodes>& weights_at_end() {
+  static const std::array<double, nodes> weights = [] {
+    const auto& t = node_places();
+    std::array<double, nodes> all{};
     for (std::size_t i = 0; i < t.size(); ++i) {
       all[i] = 1;
       for (std::size_t j = 0; j < t.size(); ++j) {
@@ -73,7 +84,7 @@ const std::array<double, AdaptiveQuadrature::nodes>& weights_at_end() {
 double unseen(Span span, const AdaptiveQuadrature::Values& at) {
   double low = at[low_end].value - weights_at_end()[0] * at[0].value;
   double high = at[high_end].value - weights_at_end()[0] * at[0].value;
-  for (std::size_t i = 1; i < AdaptiveQuadrature::nodes; i += 2) {
+  for (std::size_t i = 1; i < nodes; i += 2) {
     const double near = weights_at_end()[i];
     const double far = weights_at_end()[i + 1];
     low -= near * at[i].value + far * at[i + 1].value;
@@ -84,7 +95,7 @@ double unseen(Span span, const AdaptiveQuadrature::Values& at) {
 
 AdaptiveQuadrature::Sampled sampled_in(Span span, const AdaptiveQuadrature::Values& at) {
   AdaptiveQuadrature::Sampled found{.ends = {at[low_end].value, at[high_end].value}};
-  for (std::size_t i = 0; i < AdaptiveQuadrature::nodes; ++i) {
+  for (std::size_t i = 0; i < nodes; ++i) {
     const double weight = span.width() / 2 * node_weights()[i];
     found.parts[i] = weight * at[i].value;
     found.integral =
@@ -107,6 +118,18 @@ bool is_good(const Integral& sum, double tolerance) { return sum.error - sum.giv
 Integral given_up(Integral sum) {
   if (sum.value > 0) sum.error = std::min(sum.error, sum.given + most_of_a_pole * sum.value);
   return sum;
+}
+
+// Borders from `from` on toward `to`, in gaps that double, up to the middle between them.
+void grade(double from, double to, double gap, std::vector<double>& borders) {
+  const double sign = to > from ? 1 : -1;
+  const double reach = std::abs(to - from) / 2;
+  double distance = 0;
+  while (distance + 2 * gap < reach) {
+    gap *= 2;
+    distance += gap;
+    borders.push_back(from + sign * distance);
+  }
 }
 
 }  // namespace
@@ -157,11 +180,6 @@ AdaptiveQuadrature::Values AdaptiveQuadrature::counted(
 
 AdaptiveQuadrature::Sampled AdaptiveQuadrature::sampled(const Function& function, Span span) {
   return sampled_in(span, function(places_in(span)));
-}
-
-const std::array<double, AdaptiveQuadrature::nodes>& AdaptiveQuadrature::node_places() {
-  static const auto places = on_both_sides(Rule::abscissa(), -1);
-  return places;
 }
 
 Integral AdaptiveQuadrature::over(const Function& function, Span span) {
@@ -278,22 +296,6 @@ std::vector<Span> cut(Span span, Span whole, const Panelling& panels) {
   return parts;
 }
 
-namespace {
-
-// Borders from `from` on toward `to`, in gaps that double, up to the middle between them.
-void grade(double from, double to, double gap, std::vector<double>& borders) {
-  const double sign = to > from ? 1 : -1;
-  const double reach = std::abs(to - from) / 2;
-  double distance = 0;
-  while (distance + 2 * gap < reach) {
-    gap *= 2;
-    distance += gap;
-    borders.push_back(from + sign * distance);
-  }
-}
-
-}  // namespace
-
 std::vector<double> borders_of_peaks(std::vector<double> values, Span whole) {
   constexpr std::size_t quantiles = 32;
   constexpr double close = 1.0 / 1024;
@@ -320,6 +322,192 @@ std::vector<double> borders_of_peaks(std::vector<double> values, Span whole) {
   }
   std::ranges::sort(borders);
   return borders;
+}
+
+namespace {
+
+using Slopes = TabulatedLaw::Slopes;
+
+constexpr int places_compared = 7;
+constexpr double largest_departure = 1e-6;
+
+// P_0 to P_nodes at t, by Bonnet's recursion.
+std::array<double, nodes + 1> legendre(double t) {
+  std::array<double, nodes + 1> p{1, t};
+  for (std::size_t k = 1; k < nodes; ++k) {
+    const double degree = static_cast<double>(k);
+    p[k + 1] = ((2 * degree + 1) * t * p[k] - degree * p[k - 1]) / (degree + 1);
+  }
+  return p;
+}
+
+// P_1 to P_(nodes - 1) at every node.
+const std::array<Slopes, nodes>& legendre_at_nodes() {
+  static const std::array<Slopes, nodes> table = [] {
+    std::array<Slopes, nodes> all{};
+    for (std::size_t i = 0; i < nodes; ++i) {
+      const auto p = legendre(node_places()[i]);
+      std::copy(p.begin() + 1, p.end() - 1, all[i].begin());
+    }
+    return all;
+  }();
+  return table;
+}
+
+// A part's mass and how it is spread. int_-1^t P_k = (P_k+1 - P_k-1) / (2 k + 1). The k-th
+// coefficient of the interpolant is (2 k + 1) / 2 sum w_i f_i P_k(t_i), exact for degree 6.
+struct Spread {
+  Integral mass;
+  Slopes slopes = {};
+  // Mass that a jump beyond the outermost nodes may add or take. The density at the ends then
+  // departs from the interpolant.
+  double unseen = 0;
+
+  Spread(const AdaptiveQuadrature::Sampled& sampled, double width) : mass(sampled.integral) {
+    for (std::size_t i = 0; i < nodes; ++i) {
+      const Slopes& p = legendre_at_nodes()[i];
+      for (std::size_t k = 0; k < slopes.size(); ++k) slopes[k] += sampled.parts[i] * p[k] / 2;
+    }
+    for (const int end : {-1, 1}) {
+      const double there = width * sampled.ends[end < 0 ? 0 : 1];
+      unseen += blind_share * std::abs(there - 2 * density_at(end));
+    }
+  }
+
+ private:
+  // The interpolant at t = -1 or 1, from P_k(1) = 1 and P_k(-1) = (-1)^k. Its integral over t is
+  // the mass.
+  double density_at(int end) const {
+    double sum = mass.value / 2;
+    double sign = end;
+    for (std::size_t k = 0; k < slopes.size(); ++k, sign *= end) {
+      sum += slopes[k] * (2.0 * static_cast<double>(k) + 3) * sign;
+    }
+    return sum;
+  }
+};
+
+// The mass below t in [-1, 1].
+double mass_below(double t, double mass, const Slopes& slopes) {
+  const auto p = legendre(t);
+  double sum = mass / 2 * (t + 1);
+  for (std::size_t k = 0; k < slopes.size(); ++k) sum += slopes[k] * (p[k + 2] - p[k]);
+  return sum;
+}
+
+// The distance between a part's law inside it and that of its halves.
+double largest_distance(const Spread& whole, const Spread& first, const Spread& second) {
+  const auto below = [](double t, const Spread& of) {
+    return mass_below(t, of.mass.value, of.slopes);
+  };
+  double largest = 0;
+  for (int k = 1; k <= places_compared; ++k) {
+    const double t = 2.0 * k / (places_compared + 1) - 1;
+    const double by_halves =
+        t <= 0 ? below(2 * t + 1, first) : first.mass.value + below(2 * t - 1, second);
+    largest = std::max(largest, std::abs(by_halves - below(t, whole)));
+  }
+  return largest;
+}
+
+struct Part {
+  Span span;
+  Spread first;   // Lower half.
+  Spread second;  // Upper half.
+  double error = 0;
+  double departure = 0;
+  double badness = 0;  // Above 1: to be halved.
+  int depth = 0;
+
+  bool operator<(const Part& other) const { return badness < other.badness; }
+};
+
+// Halves the worst part first, so that the evaluations go where they help most.
+class Table {
+ public:
+  Table(const AdaptiveQuadrature::Function& density, AdaptiveQuadrature& rule)
+      : density_(density), rule_(rule) {}
+
+  void add(Span span) { add(span, spread(span), 0, 0); }
+
+  void refine() {
+    while (parts_.front().badness > 1 && !rule_.exhausted()) {
+      std::pop_heap(parts_.begin(), parts_.end());
+      const Part part = parts_.back();
+      parts_.pop_back();
+      const auto [low, high] = part.span.halves();
+      add(low, part.first, part.departure / 4, part.depth + 1);
+      add(high, part.second, part.departure / 4, part.depth + 1);
+    }
+  }
+
+  TabulatedLaw result() {
+    std::ranges::sort(parts_, {}, [](const Part& part) { return part.span.low; });
+    TabulatedLaw law{.place = {parts_.front().span.low}, .cumulated = {0}};
+    double departure = 0;
+    for (const Part& part : parts_) {
+      append(law, part.span.middle(), part.first);
+      append(law, part.span.high, part.second);
+      law.total_error += part.error;
+      departure = std::max(departure, part.departure);
+    }
+    check::positive({"tabulate", "mass"}, law.total());
+    law.error = (departure + law.total_error) / law.total();
+    return law;
+  }
+
+ private:
+  Spread spread(Span span) { return {rule_.sampled(density_, span), span.width()}; }
+
+  // Part of the departure is inherited from the part that this is a half of. Two halves that agree
+  // by luck do so once.
+  void add(Span span, const Spread& whole, double inherited, int depth) {
+    const auto [low, high] = span.halves();
+    Part part{.span = span, .first = spread(low), .second = spread(high), .depth = depth};
+    const Integral sum = part.first.mass + part.second.mass;
+    part.error = std::max(std::abs(sum.value - whole.mass.value), sum.error);
+    const double seen = largest_distance(whole, part.first, part.second);
+    part.departure = std::max(seen + part.first.unseen + part.second.unseen, inherited);
+    if (part.depth < deepest_bisection) {
+      part.badness =
+          std::max(part.departure / largest_departure, part.error / rule_.limits().tolerance);
+    }
+    parts_.push_back(part);
+    std::push_heap(parts_.begin(), parts_.end());
+  }
+
+  static void append(TabulatedLaw& law, double place, const Spread& part) {
+    law.place.push_back(place);
+    law.cumulated.push_back(law.cumulated.back() + part.mass.value);
+    law.slopes.push_back(part.slopes);
+  }
+
+  const AdaptiveQuadrature::Function& density_;
+  AdaptiveQuadrature& rule_;
+  std::vector<Part> parts_;  // A heap, the worst first.
+};
+
+}  // namespace
+
+double TabulatedLaw::operator()(double x) const {
+  if (x <= place.front()) return 0;
+  if (x >= place.back()) return 1;
+  const std::size_t above = count_up_to(place, x);
+  const std::size_t part = above - 1;
+  const double share = (x - place[part]) / (place[above] - place[part]);
+  const double mass = cumulated[above] - cumulated[part];
+  // The polynomial may leave its part's range next to a jump.
+  const double within = std::clamp(mass_below(2 * share - 1, mass, slopes[part]), 0.0, mass);
+  return std::min(1.0, (cumulated[part] + within) / total());
+}
+
+TabulatedLaw tabulate(const AdaptiveQuadrature::Function& density, const std::vector<Span>& parts,
+                      AdaptiveQuadrature& rule) {
+  check::at_least({"tabulate", "number of parts"}, parts.size(), 1);
+  Table table(density, rule);
+  for (const Span& part : parts) table.add(part);
+  table.refine();
+  return table.result();
 }
 
 }  // namespace assay::stats

@@ -53,7 +53,7 @@ struct QuadratureLimits {
 class AdaptiveQuadrature {
  public:
   static constexpr std::size_t nodes = 7;
-  // A part is looked at at the nodes, in the order of node_places(), and just inside its ends.
+  // A part is looked at at the nodes, and then just inside its ends.
   using Places = std::array<double, nodes + 2>;
   using Values = std::array<Integral, nodes + 2>;
   using Function = std::function<Values(const Places&)>;
@@ -70,18 +70,14 @@ class AdaptiveQuadrature {
   // Throws as above.
   std::vector<Integral> along(const PlaneValues& density, std::span<const Line> lines);
   // The integral without halving. Its error covers the values' own errors and a jump. Its parts are
-  // w_i f(x_i) times half the width at each node, in the order of node_places(). The ends hold f
+  // w_i f(x_i) times half the width at each node, in their order. The ends hold f
   // just inside the part.
   struct Sampled {
     Integral integral;
     std::array<double, nodes> parts = {};
     std::array<double, 2> ends = {};
   };
-  // Share of a part that lies beyond the outermost node, on one side.
-  static constexpr double blind_share = 0.0255;
   Sampled sampled(const Function& function, Span span);
-  // The nodes in [-1, 1].
-  static const std::array<double, nodes>& node_places();
   // A density as such a function, called as density(place) or density(places, values). Its values
   // count against the limit. Throws as above.
   template <class Density>
@@ -130,5 +126,35 @@ std::vector<Span> cut(Span span, Span whole, const Panelling& panels);
 // quantiles, as far as neighbours are closer than 1 / 1024 of `whole`. From them on gaps double, so
 // that no part is more than twice as long as its neighbour toward a peak. None for an even law.
 std::vector<double> borders_of_peaks(std::vector<double> values, Span whole);
+
+// The distribution function of a density as a table. Between two places it is the integral of the
+// polynomial through the density at the rule's nodes there.
+struct TabulatedLaw {
+  // Legendre coefficients. The integral of the interpolant up to t in [-1, 1] is
+  //  `mass / 2 (t + 1) + sum over k >= 1 of slope_(k-1) (P_(k+1)(t) - P_(k-1)(t))`.
+  using Slopes = std::array<double, AdaptiveQuadrature::nodes - 1>;
+
+  std::vector<double> place;      // Ascending.
+  std::vector<double> cumulated;  // Mass up to each place, the first 0.
+  std::vector<Slopes> slopes;     // Slopes of each part, times the mass.
+  double total_error = 0;         // Estimated error of the mass.
+  // Estimate of sup |table - law|: the largest departure plus the errors of all masses, over the
+  // mass. A part's departure compares the law from its own nodes with that from its halves' nodes,
+  // at seven places inside. It adds what a jump beyond the outermost nodes may hide. It is at least
+  // a quarter of the departure of the part that it is a half of. The table has the halves, which
+  // are nearer: by 2^-7 where the density is smooth, by about 1/2 where it jumps.
+  double error = 0;
+
+  double total() const { return cumulated.back(); }
+  // P(X <= x | a point): 0 below the first place, 1 above the last.
+  double operator()(double x) const;
+};
+
+// Halves parts where the mass is and where the density is no polynomial, the worst first. The
+// visible part of their error is then below 1e-6. `parts` are contiguous and ascending. It stops
+// when the rule's evaluations are used up. Throws std::domain_error when there is no mass, or a
+// density is negative or not finite.
+TabulatedLaw tabulate(const AdaptiveQuadrature::Function& density, const std::vector<Span>& parts,
+                      AdaptiveQuadrature& rule);
 
 }  // namespace assay::stats

@@ -70,9 +70,9 @@ class CellQuadrature {
   // along the sides, at 256 points each. The error does not cover what may still hide there.
   Integral beside_support(const PlaneCell& cell) {
     rule_.forget_largest();
-    for (std::size_t k = 0; !shown_at(cell, k);) {
-      if ((k += probes_at_once) == probes_a_side) return {};
-    }
+    std::size_t k = 0;
+    while (k < probes_a_side && !shown_at(cell, k)) k += probes_at_once;
+    if (k == probes_a_side) return {};
     const PlaneDensity closer{.x = cell.x,
                               .y = cell.y,
                               .values = density_.values,

@@ -72,9 +72,7 @@ double log_p_upper(const TwoValued& x, const TwoValued& y, Contrast null_value) 
 TestResult binomial(Successes observed, double null_probability) {
   check_counts("binomial", observed);
   check::unit({"binomial", "null_probability"}, null_probability);
-  return by_tails(static_cast<double>(observed.successes),
-                  {"binomial", {static_cast<double>(observed.trials), null_probability}},
-                  binomial_tails(observed.successes, {observed.trials, null_probability}));
+  return binomial_within(observed, null_probability, 0);
 }
 
 TestResult binomial_within(Successes observed, double q, double error) {

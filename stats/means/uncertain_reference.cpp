@@ -32,13 +32,13 @@ std::vector<double> places(const UncertainReference& reference, double errors) {
 }
 
 // The largest ln p over all places of the references from this one on.
-double largest(const LogP& log_p, std::span<const std::vector<double>> all,
+double largest(const LogP& log_p, std::span<const UncertainReference> references, double errors,
                std::vector<double>& at) {
-  if (at.size() == all.size()) return log_p(at);
+  if (at.size() == references.size()) return log_p(at);
   double most = -std::numeric_limits<double>::infinity();
-  for (const double place : all[at.size()]) {
+  for (const double place : places(references[at.size()], errors)) {
     at.push_back(place);
-    most = std::max(most, largest(log_p, all, at));
+    most = std::max(most, largest(log_p, references, errors, at));
     at.pop_back();
   }
   return most;
@@ -49,11 +49,8 @@ double largest_at(const LogP& log_p, std::span<const UncertainReference> referen
                   double log_level) {
   const double log_miss =
       log_level + std::log(share_of_references / 2 / static_cast<double>(references.size()));
-  const double errors = normal_quantile({Tail::upper, log_miss});
-  std::vector<std::vector<double>> all;
-  for (const UncertainReference& reference : references) all.push_back(places(reference, errors));
   std::vector<double> at;
-  return largest(log_p, all, at);
+  return largest(log_p, references, normal_quantile({Tail::upper, log_miss}), at);
 }
 
 bool are_exact(std::span<const UncertainReference> references) {

@@ -21,7 +21,7 @@
 #include "stats/planning/power.h"
 #include "stats/pyramids/image_pyramid.h"
 #include "stats/tails/kolmogorov.h"
-#include "stats/tails/tabulated_law.h"
+#include "stats/basics/adaptive_quadrature.h"
 #include "stats/tails/tails.h"
 #include "stats/variances/influence.h"
 #include "stats/variances/normal_variances.h"

@@ -1,4 +1,4 @@
-#include "stats/tails/tabulated_law.h"
+#include "stats/basics/adaptive_quadrature.h"
 
 #include "tests/stats/point_by_point.h"
 #include "tests/stats/prelude.h"
