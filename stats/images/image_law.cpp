@@ -202,7 +202,7 @@ class Pooled {
                .y = at.y};
       cells.images.assign(images_.size(), std::vector<float>(cells.count()));
     }
-    // Of one element in all images.
+    // One element's values in all images, in order, and its scores.
     std::vector<Placed<double>> order;
     std::array<std::vector<double>, element_scores> by;
     auto& [value, rank, spread] = by;
