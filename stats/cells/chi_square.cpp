@@ -171,14 +171,6 @@ std::vector<PooledCell> pooled(const CellCounts& counts, double observations, do
   return large;
 }
 
-std::uint64_t impossible_observations(const CellCounts& counts) {
-  std::uint64_t total = 0;
-  for (std::size_t i = 0; i < counts.probability.size(); ++i) {
-    if (counts.probability[i] == 0) total += counts.observed[i];
-  }
-  return total;
-}
-
 double pearson(const std::vector<PooledCell>& cells) {
   double sum = 0;
   for (const PooledCell& cell : cells) {
@@ -248,7 +240,9 @@ ChiSquareFit chi_square_fit(const CellCounts& counts, FitOptions options) {
   const double n = static_cast<double>(fit.observations);
   fit.cells = pooled(counts, n, options.minimum_expected);
   check::at_least({"chi_square_fit", "pooled cells"}, fit.cells.size(), 2);
-  fit.impossible = impossible_observations(counts);
+  for (std::size_t i = 0; i < counts.probability.size(); ++i) {
+    if (counts.probability[i] == 0) fit.impossible += counts.observed[i];
+  }
   fit.probability_tolerance = options.probability_tolerance;
   fit.degrees_of_freedom = static_cast<double>(fit.cells.size() - 1);
   fit.error_effect = error_effect_of(fit, counts.error);

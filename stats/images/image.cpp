@@ -22,14 +22,6 @@ void size_of(Argument argument, std::size_t size, const ImageExtent& extent) {
   }
 }
 
-void image_reference(const char* function, const ImageReference& reference) {
-  extent_of(function, reference.extent);
-  size_of({function, "size of the reference"}, reference.value.size(), reference.extent);
-  if (reference.standard_error.empty()) return;
-  size_of({function, "size of the standard errors"}, reference.standard_error.size(),
-          reference.extent);
-}
-
 void same_extent(const char* function, const ImageExtent& a, const ImageExtent& b) {
   if (a == b) return;
   const auto text = [](const ImageExtent& e) {
@@ -76,8 +68,11 @@ void image_pair(const char* function, const ImagePair& pair) {
     image_stack(function, *pair.b);
     same_extent(function, pair.a.extent, pair.b->extent);
   } else {
-    image_reference(function, pair.reference);
-    same_extent(function, pair.a.extent, pair.reference.extent);
+    const auto& [extent, value, errors] = pair.reference;
+    extent_of(function, extent);
+    size_of({function, "size of the reference"}, value.size(), extent);
+    if (!errors.empty()) size_of({function, "size of the standard errors"}, errors.size(), extent);
+    same_extent(function, pair.a.extent, extent);
   }
 }
 

@@ -86,13 +86,6 @@ double image_squared_mean(const ImageStack& stack) {
   return squared_mean_of(stack, trace_of(differences_of(stack), one_by_one));
 }
 
-namespace {
-
-// Standard errors above estimates of the noise.
-constexpr double errors_above = 2;
-
-}  // namespace
-
 void ImageNoise::add(const ImageNoise& side, double square, double averaged) {
   trace += square * side.trace / averaged;
   root += square * side.root / averaged;
@@ -101,6 +94,7 @@ void ImageNoise::add(const ImageNoise& side, double square, double averaged) {
 }
 
 ImageNoise noise_of_pilot(const ImageStack& pilot, const ForEach& for_each) {
+  constexpr double errors_above = 2;
   const ImageCovariance found = image_covariance(pilot, for_each);
   const double square = found.squared_trace + errors_above * found.squared_trace_error;
   const auto images = static_cast<double>(pilot.images.size());

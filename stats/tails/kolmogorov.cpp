@@ -91,22 +91,19 @@ struct ScaledVector {
   long exponent = 0;
 };
 
-void multiply(const ScaledMatrix& matrix, ScaledVector& vector) {
-  std::vector<double> product(matrix.size, 0.0);
-  for (std::size_t i = 0; i < matrix.size; ++i) {
-    for (std::size_t j = 0; j < matrix.size; ++j) {
-      product[i] += matrix.at(i, j) * vector.entries[j];
-    }
-  }
-  vector.entries = std::move(product);
-  vector.exponent += matrix.exponent + rescale(vector.entries);
-}
-
 ScaledVector power_column(ScaledMatrix matrix, std::uint64_t exponent, std::size_t column) {
-  ScaledVector result{std::vector<double>(matrix.size, 0.0)};
+  const std::size_t size = matrix.size;
+  ScaledVector result{std::vector<double>(size, 0.0)};
   result.entries[column] = 1;
   for (; exponent > 0; exponent >>= 1) {
-    if ((exponent & 1U) != 0) multiply(matrix, result);
+    if ((exponent & 1U) != 0) {
+      std::vector<double> product(size, 0.0);
+      for (std::size_t i = 0; i < size; ++i) {
+        for (std::size_t j = 0; j < size; ++j) product[i] += matrix.at(i, j) * result.entries[j];
+      }
+      result.entries = std::move(product);
+      result.exponent += matrix.exponent + rescale(result.entries);
+    }
     if (exponent > 1) matrix = squared(matrix);
   }
   return result;

@@ -61,24 +61,12 @@ double symmetric_quantile(LogTail tail, double guess, const Tails& tails) {
   return small.tail == Tail::upper ? magnitude : -magnitude;
 }
 
-double rough_normal(LogTail tail) {
-  const double excess = -smaller(tail).log_probability - std::numbers::ln2;
-  return std::sqrt(2 * excess) + 1e-8;
-}
-
-// Wilson & Hilferty (1931), good enough to start from.
-double rough_chi_square(LogTail tail, double degrees) {
-  const double z = normal_quantile(tail);
-  const double c = 2 / (9 * degrees);
-  const double root = std::max(1 - c + z * std::sqrt(c), 1e-3);
-  return degrees * root * root * root;
-}
-
 }  // namespace
 
 double normal_quantile(LogTail tail) {
   check_tail("normal_quantile", tail);
-  return symmetric_quantile(tail, rough_normal(tail), normal_tails);
+  const double excess = -smaller(tail).log_probability - std::numbers::ln2;
+  return symmetric_quantile(tail, std::sqrt(2 * excess) + 1e-8, normal_tails);
 }
 
 double student_t_quantile(LogTail tail, double degrees) {
@@ -90,7 +78,10 @@ double student_t_quantile(LogTail tail, double degrees) {
 
 double chi_square_quantile(LogTail tail, double degrees) {
   check_tail("chi_square_quantile", tail);
-  return positive_quantile(tail, rough_chi_square(tail, degrees),
+  // Wilson & Hilferty (1931), good enough to start from.
+  const double c = 2 / (9 * degrees);
+  const double root = std::max(1 - c + normal_quantile(tail) * std::sqrt(c), 1e-3);
+  return positive_quantile(tail, degrees * root * root * root,
                            [&](double x) { return chi_square_tails(x, degrees); });
 }
 
