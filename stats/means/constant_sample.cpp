@@ -40,13 +40,14 @@ double log_unseen(const ConstantSample& sample, double other, double shift) {
 
 double log_p_constant(const ConstantSample& sample, const Reference& reference) {
   check_arguments(sample, reference);
-  const auto [other, error] = reference;
+  const double other = reference.value;
+  const double error = reference.standard_error;
   const double size = std::abs(other - sample.value);
   if (size == 0) return 0;
   if (!(error > 0)) return log_unseen(sample, other, size);
   const double least = std::max(0.0, (size - reach_toward(sample, other)) / error);
   // With the reference off by `errors` of its standard errors.
-  const auto log_p = [&, other = other, error = error](double errors) {
+  const auto log_p = [&](double errors) {
     const double shift = std::max(0.0, size - errors * error);
     const double off = std::min(0.0, std::numbers::ln2 + normal_tails(errors).upper);
     return std::max(probability_zero, log_unseen(sample, other, shift) + off);
