@@ -116,7 +116,7 @@ class Servant {
     const Clock::time_point start = Clock::now();
     if (!round_) round_ = std::make_unique<DrawnRound>();
     for (const NamedRecipe& each : recipes) add(each);
-    const std::vector<std::string> blocks = drawn(orders);
+    const std::vector<Pool::Block> blocks = drawn(orders);
     // Programs may have stopped for the same signal.
     if (interrupted()) return;
     messages_.send(0, packed(Kind::reply, number, seconds_since(start), blocks));
@@ -133,14 +133,13 @@ class Servant {
     if (draws != nullptr && counts) draws->cell_numbers();
     SomePools& pools = round_->pools;
     pools.resize(std::max<std::size_t>(pools.size(), named.pool + 1));
-    pools[named.pool] = std::make_shared<Pool>(pool_of(named.recipe, setup->second));
+    pools[named.pool] = std::make_shared<Pool>(setup->second, named.recipe);
   }
 
-  std::vector<std::string> drawn(const std::vector<Task>& orders) {
-    std::vector<std::string> blocks(orders.size());
+  std::vector<Pool::Block> drawn(const std::vector<Task>& orders) {
+    std::vector<Pool::Block> blocks(orders.size());
     with_threads(prepared_.threads, [&] {
-      on_all_threads(orders.size(),
-                     [&](std::size_t i) { blocks[i] = packed_block(round_->draw(orders[i])); });
+      on_all_threads(orders.size(), [&](std::size_t i) { blocks[i] = round_->draw(orders[i]); });
     });
     return blocks;
   }
@@ -200,15 +199,11 @@ class Ranks::Window {
     return some;
   }
 
-  /// Takes a reply's block, unless it was drawn again meanwhile. Throws Unpackable if it is none.
-  void put(std::uint64_t number, std::string_view packed, double block_seconds, double waited) {
+  /// Takes a reply's block, unless it was drawn again meanwhile.
+  void put(std::uint64_t number, Pool::Block&& block, double block_seconds, double waited) {
     if (number < front_) return;
     Slot& slot = slots_[number - front_];
-    if (slot.drawn) return;
-    Pool::Block block = unpacked_block(packed, pool(slot), slot.task.first);
-    Unpacker::require(block.fault || block.whole.count == slot.task.last - slot.task.first,
-                      "a block of another length");
-    note(slot, std::move(block), packed.size(), block_seconds, waited);
+    if (!slot.drawn) note(slot, std::move(block), block_seconds, waited);
   }
 
   /// Draws blocks on this rank's threads; false if there are none to draw.
@@ -231,8 +226,7 @@ class Ranks::Window {
     on_all_threads(some.size(), [&](std::size_t i) { blocks[i] = draw_(at(some[i]).task); });
     const double seconds = seconds_since(start);
     for (std::size_t i = 0; i < some.size(); ++i) {
-      const std::size_t bytes = bytes_of(blocks[i]);
-      note(slots_[some[i] - front_], std::move(blocks[i]), bytes, seconds, seconds);
+      note(slots_[some[i] - front_], std::move(blocks[i]), seconds, seconds);
     }
     return !some.empty();
   }
@@ -258,21 +252,21 @@ class Ranks::Window {
 
   static std::size_t bytes_of(const Pool::Block& block) {
     std::size_t bytes = block.whole.channels.size() * sizeof(ChannelSummary);
-    for (const auto& values : block.observations->values) bytes += values.size() * sizeof(double);
-    for (const auto& values : block.values) bytes += values.size() * sizeof(double);
+    const auto add = [&](const auto& lists) {
+      for (const auto& list : lists) bytes += list.size() * sizeof list[0];
+    };
+    add(block.observations->images);
+    add(block.observations->values);
+    add(block.values);
     return bytes;
   }
 
-  void note(Slot& slot, Pool::Block block, std::size_t bytes, double block_seconds, double waited) {
+  void note(Slot& slot, Pool::Block&& block, double block_seconds, double waited) {
     Usual& usual = usual_[slot.task.pool];
     usual = {block_seconds, std::max(usual.wait, waited)};
-    keep(slot, std::move(block), bytes);
-  }
-
-  void keep(Slot& slot, Pool::Block block, std::size_t bytes) {
+    slot.bytes = bytes_of(block);
     slot.drawn = std::make_unique<Pool::Block>(std::move(block));
-    slot.bytes = bytes;
-    waiting_bytes_ += bytes;
+    waiting_bytes_ += slot.bytes;
   }
 
   void give_to(int rank, std::uint64_t number) {
@@ -400,7 +394,7 @@ void Ranks::take_reply(const Messages::Message& message, Window& window) {
   }
   std::uint64_t number = 0;
   double seconds = 0;
-  std::vector<std::string_view> blocks;
+  std::vector<Pool::Block> blocks;
   unpack(number, seconds, blocks);
   unpack.end();
   const auto found = batches_.find(number);
@@ -413,7 +407,7 @@ void Ranks::take_reply(const Messages::Message& message, Window& window) {
   --ranks_[static_cast<std::size_t>(message.from)].batches;
   if (batch.round != round_) return;
   for (std::size_t i = 0; i < blocks.size(); ++i) {
-    window.put(batch.slots[i], blocks[i], seconds / static_cast<double>(blocks.size()),
+    window.put(batch.slots[i], std::move(blocks[i]), seconds / static_cast<double>(blocks.size()),
                seconds_since(batch.sent));
   }
 }

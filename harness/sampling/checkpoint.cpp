@@ -40,9 +40,8 @@ Checkpoint::Checkpoint(std::string file, std::chrono::duration<double> pause, Id
 void Checkpoint::read() {
   const std::string bytes = bytes_of(file_).value_or("");
   Identity identity;
-  std::vector<std::pair<std::string, WrittenPool>> entries;
   try {
-    unpack(bytes, identity, entries);
+    unpack(bytes, identity, pools_);
   } catch (const Unpackable& refusal) {
     refuse({.file = file_}, "is no usable checkpoint: {}; remove it", refusal.what());
   }
@@ -51,7 +50,6 @@ void Checkpoint::read() {
            "is the checkpoint of another run: {} was {} and is {}; remove it, or name another file",
            other->name, other->theirs, other->ours);
   }
-  pools_.insert(std::make_move_iterator(entries.begin()), std::make_move_iterator(entries.end()));
 }
 
 /// Drops what was added when FILE was not written any more.
@@ -70,27 +68,22 @@ void Checkpoint::open_kept(bool is_resumed) {
 }
 
 void Checkpoint::write() {
-  std::uint64_t count = 0;
   for (auto& [recipe, written] : pools_) {
     const std::shared_ptr<Pool> pool = written.pool.lock();
-    if (pool && pool->drawn() > written.count && !pool->fault()) update(recipe, written, *pool);
-    count += written.sums.empty() ? 0U : 1U;
+    const std::uint64_t count = written.sums.whole.count;
+    if (pool && pool->drawn() > count && !pool->fault()) update(recipe, written, *pool);
   }
   kept_->flush();
-  Packer pack;
-  pack(identity_, count);  // A list of pairs follows, without a copy of their sums.
-  for (const auto& [recipe, written] : pools_) {
-    if (!written.sums.empty()) pack(recipe, written);
-  }
-  write_whole(file_, framed(std::move(pack).bytes()));
+  write_whole(file_, packed(identity_, pools_));
 }
 
 void Checkpoint::update(const std::string& recipe, WrittenPool& written, const Pool& pool) {
   const std::uint64_t hash = text_hash(recipe);
-  WrittenPool next{packed_sums(pool.drawn_sums()), written.kept, pool.drawn(), written.pool};
-  for (std::uint64_t first = written.count; first < pool.kept_end(); first += pool.block_size()) {
+  WrittenPool next{pool.drawn_sums(), written.kept, written.pool};
+  std::uint64_t first = written.sums.whole.count;
+  for (; first < pool.kept_end(); first += pool.block_size()) {
     const std::uint64_t last = std::min(first + pool.block_size(), pool.kept_end());
-    const std::string part = packed(hash, first, packed_kept(pool.kept_block(first, last)));
+    const std::string part = packed(hash, first, pool.kept_block(first, last));
     next.kept.push_back({first, kept_->size(), part.size()});
     kept_->append(part);
   }
@@ -129,29 +122,28 @@ void Checkpoint::recall(const SomePools& pools) {
     WrittenPool& written = pools_[recipe];
     if (!written.pool.expired()) continue;
     written.pool = pool;
-    if (!written.sums.empty()) resume(recipe, written, *pool);
+    if (written.sums.whole.count > 0) resume(recipe, written, *pool);
   }
 }
 
-void Checkpoint::resume(const std::string& recipe, WrittenPool& written, Pool& pool) const {
+void Checkpoint::resume(const std::string& recipe, const WrittenPool& written, Pool& pool) const {
   const std::uint64_t expected = text_hash(recipe);
-  Pool::Block block;
+  Pool::Block block = written.sums;
+  block.observations = std::make_shared<KeptObservations>();
   try {
     for (const KeptPart& part : written.kept) {
       std::uint64_t hash = 0;
       std::uint64_t observation = 0;
-      std::string_view kept;
-      const std::string frame = kept_->read(part.place, part.size);
-      unpack(frame, hash, observation, kept);
+      Pool::Block kept;
+      unpack(kept_->read(part.place, part.size), hash, observation, kept);
       Unpacker::require(hash == expected && observation == part.observation,
                         "it holds other observations");
-      add_kept(kept, block);
+      block.append_kept(std::move(kept));
     }
-    pool.fold(unpacked_drawn(written.sums, std::move(block), pool));
   } catch (const Unpackable& refusal) {
     refuse({.file = kept_->path()}, "does not fit {}: {}; remove both", file_, refusal.what());
   }
-  written.count = pool.drawn();
+  pool.fold(std::move(block));
 }
 
 void Checkpoint::draw(Round& round) {

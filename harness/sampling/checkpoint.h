@@ -23,9 +23,8 @@ struct KeptPart {
 
 /// A pool's observations when it was last written.
 struct WrittenPool {
-  std::string sums = "";  ///< "": it was not written yet
+  Pool::Block sums;  ///< It keeps nothing.
   std::vector<KeptPart> kept = {};
-  std::uint64_t count = 0;        ///< how many they are; not in the file
   std::weak_ptr<Pool> pool = {};  ///< The pool lives as long as this run needs it.
 };
 
@@ -61,7 +60,7 @@ class Checkpoint final : public Executor {
   void update(const std::string& recipe, WrittenPool& written, const Pool& pool);
   /// False if it fails, which is said: a full disk must not end a long run.
   bool try_to_write();
-  void resume(const std::string& recipe, WrittenPool& written, Pool& pool) const;
+  void resume(const std::string& recipe, const WrittenPool& written, Pool& pool) const;
 
   std::string file_;
   Clock::duration pause_;

@@ -3,7 +3,8 @@
 // Plain data between processes of one version of Assay. Numbers go by their bits, lists after their
 // lengths. A frame around the data tells their format and byte order, and ends with a checksum.
 //
-// A recipe lets another process draw blocks of a pool. It returns them as plain data.
+// A recipe lets another process draw blocks of a pool. It returns them as plain data. The checksum
+// alone tells that they are whole: both processes have one identity.
 
 #include <concepts>
 #include <cstdint>
@@ -52,12 +53,6 @@ class BinaryArchive {
   void operator()(T&&... values) {
     (pass(values), ...);
   }
-  /// A list whose length the reader knows.
-  template <class List>
-  void fixed(List& list) {
-    require(length(list.size(), 0) == list.size(), "a list has another length than its plan says");
-    pass_each(list);
-  }
   std::string bytes() && { return std::move(bytes_); }
   /// Call it after the last value that is taken off.
   void end() const { require(bytes_.empty(), "there is more in it than expected"); }
@@ -84,7 +79,7 @@ class BinaryArchive {
   /// The length of a list whose elements take at least so many bytes each.
   std::uint64_t length(std::uint64_t count, std::uint64_t least) {
     pass(count);
-    const bool fits = packs || least == 0 || count <= bytes_.size() / least;
+    const bool fits = packs || count <= bytes_.size() / least;
     require(fits, "a list is longer than the data");
     return count;
   }
@@ -119,6 +114,22 @@ class BinaryArchive {
         if (there) value.emplace();
       }
       if (there) pass(*value);
+    } else if constexpr (requires { value.use_count(); }) {
+      auto shared = std::const_pointer_cast<std::remove_const_t<typename T::element_type>>(value);
+      if constexpr (!packs)
+        value = shared = std::make_shared<typename decltype(shared)::element_type>();
+      pass(*shared);
+    } else if constexpr (requires { typename T::mapped_type; }) {
+      const auto size = length(value.size(), sizeof(std::uint64_t));
+      if constexpr (packs) {
+        for (const auto& each : value) pass(each);
+      } else {
+        for (std::uint64_t i = 0; i < size; ++i) {
+          std::pair<typename T::key_type, typename T::mapped_type> each;
+          pass(each);
+          value.insert(std::move(each));
+        }
+      }
     } else if constexpr (requires { typename T::value_type; }) {
       using Each = typename T::value_type;
       const auto size = length(value.size(), Plain<Each> ? sizeof(Each) : sizeof(std::uint64_t));
@@ -167,21 +178,8 @@ void parts(Archive& a, T& recipe) {
     recipe.marks);
 }
 
-/// A pool that draws by the recipe. Throws Unpackable if the set-up cannot.
-Pool pool_of(const Recipe& recipe, std::shared_ptr<const Setup> setup);
-
-/// Packs a block that was drawn, to stand in a frame.
-std::string packed_block(const Pool::Block& block);
-/// Reads it as a block of the pool that begins at observation `first`. Throws Unpackable unless it
-/// has the shape that the pool's plan says, so that it can be folded.
-Pool::Block unpacked_block(std::string_view bytes, const Pool& pool, std::uint64_t first);
-
-/// Packs a block's sums alone, or what it keeps.
-std::string packed_sums(const Pool::Block& block);
-std::string packed_kept(const Pool::Block& block);
-/// Adds what packed_kept packed of the observations that follow.
-void add_kept(std::string_view bytes, Pool::Block& block);
-/// Adds the packed sums of a pool to what it keeps. Throws Unpackable unless both fit the pool.
-Pool::Block unpacked_drawn(std::string_view sums, Pool::Block&& kept, const Pool& pool);
+/// A block of a pool, or a part of what it has drawn.
+void parts(Packer& a, const Pool::Block& block);
+void parts(Unpacker& a, Pool::Block& block);
 
 }  // namespace assay::harness
