@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <ranges>
 #include <stdexcept>
 #include <thread>
 
@@ -257,7 +258,7 @@ class Ranks::Window {
     };
     add(block.observations->images);
     add(block.observations->values);
-    add(block.values);
+    add(block.values | std::views::values);
     return bytes;
   }
 

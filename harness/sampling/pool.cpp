@@ -37,10 +37,9 @@ std::span<const T> part_of(const std::vector<T>& list, std::uint64_t first, std:
 }
 
 /// Appends the values of observations that follow to those of each channel.
-void append(std::vector<std::vector<double>>& all, const std::vector<std::vector<double>>& next) {
-  all.resize(std::max(all.size(), next.size()));
-  for (std::size_t c = 0; c < next.size(); ++c) {
-    all[c].insert(all[c].end(), next[c].begin(), next[c].end());
+void append(KeptValues& all, const KeptValues& next) {
+  for (const auto& [channel, values] : next) {
+    all[channel].insert(all[channel].end(), values.begin(), values.end());
   }
 }
 
@@ -80,9 +79,9 @@ std::string words_of(const std::exception_ptr& thrown) {
 }
 
 std::span<const double> Drawn::values(std::size_t channel) const {
-  if (pool_->is_ready_made() || pool_->values_.empty()) return {};
-  const std::vector<double>& kept = pool_->values_.at(channel);
-  return {kept.data(), std::min<std::size_t>(kept.size(), count_)};
+  const auto kept = pool_->values_.find(channel);
+  return kept == pool_->values_.end() ? std::span<const double>()
+                                      : part_of(kept->second, 0, count_);
 }
 
 const std::vector<stats::Gate>& Drawn::order_gates(std::size_t channel) const {
@@ -98,12 +97,6 @@ const std::vector<stats::Gate>& Drawn::order_gates(std::size_t channel) const {
 
 Images Drawn::images(std::uint64_t most) const {
   return part_of(pool_->all_kept().images, 0, std::min(count_, most));
-}
-
-std::uint64_t most_kept(std::span<const ChannelPlan> plan) {
-  std::uint64_t most = 0;
-  for (const ChannelPlan& channel : plan) most = std::max(most, channel.keep);
-  return most;
 }
 
 std::uint64_t primaries_of_observation(const Setup& setup, std::uint64_t primaries) {
@@ -182,12 +175,12 @@ void Pool::draw_one(Estimator& estimator, std::uint64_t index, std::span<double>
   for (double& number : out.first(elements_)) number = static_cast<float>(number);
 }
 
-/// One observation. Those that are summed later need not stand in `out`.
+/// One observation. Pictures need not stand in `out`.
 void Pool::observe(Estimator& estimator, std::uint64_t index, std::span<double> out,
                    Block& block) const {
   if (known_ && index < known_->size()) {
     block.whole.cost += known_->costs[index];
-    if (!sums_later()) known_->whole(index, out);
+    if (!out.empty()) known_->whole(index, out);
     return;
   }
   if (known_ || index >= recipe_.kept_observations) {
@@ -198,7 +191,7 @@ void Pool::observe(Estimator& estimator, std::uint64_t index, std::span<double> 
   KeptObservations& kept = *block.observations;
   if (setup_->pictures()) {
     read_picture(index, block);
-    if (!sums_later()) kept.whole(kept.images.size() - 1, out);
+    if (!out.empty()) kept.whole(kept.images.size() - 1, out);
   } else {
     draw_one(estimator, index, out, block.whole.cost);
     const std::span<const double> image = out.first(elements_);
@@ -212,10 +205,11 @@ void Pool::observe(Estimator& estimator, std::uint64_t index, std::span<double> 
 Pool::Block Pool::draw(const std::function<Estimator&()>& estimator, std::uint64_t first,
                        std::uint64_t last) const {
   const bool later = sums_later();
-  const std::uint64_t values_kept = later ? 0 : most_kept(recipe_.plan);
-  Block block{.whole = no_sums(),
-              .values = std::vector<std::vector<double>>(values_kept > 0 ? channels_ : 0)};
-  std::vector<double> row(later && setup_->pictures() ? 0 : channels_);
+  Block block{.whole = no_sums()};
+  for (std::size_t c = 0; c < recipe_.plan.size(); ++c) {
+    if (first < recipe_.plan[c].keep) block.values[c];
+  }
+  std::vector<double> row(later && setup_->pictures() && block.values.empty() ? 0 : channels_);
   auto mark = prefixes_.upper_bound(first);
   Estimator* source = nullptr;
   const auto seconds = [&source] {
@@ -238,8 +232,8 @@ Pool::Block Pool::draw(const std::function<Estimator&()>& estimator, std::uint64
       observe(*source, index, row, block);
       if (with_costs) cost = counted(block.whole.cost - before);
       if (!later) block.whole.add_observation(row, index, cost);
-      for (std::size_t c = 0; index < values_kept && c < row.size(); ++c) {
-        if (index < recipe_.plan[c].keep) block.values[c].push_back(row[c]);
+      for (auto& [channel, values] : block.values) {
+        if (index < recipe_.plan[channel].keep) values.push_back(row[channel]);
       }
       if (const auto variance = groups.add(row)) block.whole.group_variances.add(*variance);
       ++block.whole.count;
@@ -280,23 +274,8 @@ void Pool::take_details(Summary& summary) const {
   }
 }
 
-/// Stores the values of channels that asked for them, from kept observations.
-void Pool::keep_values() {
-  const std::uint64_t most = std::min(most_kept(recipe_.plan), drawn());
-  if (values_taken_ >= most) return;  // reserve no room for a whole picture
-  std::vector<double> out(channels_);
-  values_.resize(channels_);
-  for (; values_taken_ < most; ++values_taken_) {
-    all_kept().whole(values_taken_, out);
-    for (std::size_t c = 0; c < recipe_.plan.size(); ++c) {
-      if (values_taken_ < recipe_.plan[c].keep) values_[c].push_back(out[c]);
-    }
-  }
-}
-
 void Pool::end_drawing() {
   if (!sums_later()) return;
-  keep_values();
   const bool plain = recipe_.grouped_channels.empty() &&
                      std::ranges::none_of(recipe_.plan, &ChannelPlan::has_details);
   for (auto& [count, prefix] : prefixes_) {
@@ -332,18 +311,19 @@ Pool::Block Pool::drawn_sums() const {
 }
 
 std::uint64_t Pool::kept_end() const {
-  const std::uint64_t values = sums_later() ? 0 : most_kept(recipe_.plan);
-  return std::min(drawn(), std::max(values, recipe_.kept_observations));
+  std::uint64_t most = recipe_.kept_observations;
+  for (const ChannelPlan& channel : recipe_.plan) most = std::max(most, channel.keep);
+  return std::min(drawn(), most);
 }
 
 Pool::Block Pool::kept_block(std::uint64_t first, std::uint64_t last) const {
+  const auto copy = [&]<class T>(const std::vector<T>& list) {
+    const std::span<const T> part = part_of(list, first, last);
+    return std::vector<T>(part.begin(), part.end());
+  };
   Block block;
-  *block.observations = kept_->part(first, last);
-  if (sums_later()) return block;
-  for (const std::vector<double>& values : values_) {
-    const std::span<const double> part = part_of(values, first, last);
-    block.values.emplace_back(part.begin(), part.end());
-  }
+  *block.observations = {copy(kept_->images), copy(kept_->values), copy(kept_->costs)};
+  for (const auto& [channel, values] : values_) block.values[channel] = copy(values);
   return block;
 }
 
@@ -353,10 +333,7 @@ void Pool::Block::append_kept(Block&& next) {
 }
 
 void Pool::fold(Block&& block) {
-  if (drawn() == 0) {
-    running_ = no_sums();
-    if (most_kept(recipe_.plan) > 0 && !sums_later()) values_.resize(channels_);
-  }
+  if (drawn() == 0) running_ = no_sums();
   if (fault_) return;
   for (auto& [count, partial] : block.partial) {
     auto prefix = std::make_shared<Summary>(running_);
@@ -379,15 +356,6 @@ void Pool::draw_again(Estimator& estimator, std::uint64_t index, std::span<doubl
   const FlushDenormals flush;
   Cost unused;
   draw_one(estimator, index, out, unused);
-}
-
-KeptObservations KeptObservations::part(std::uint64_t first, std::uint64_t last) const {
-  const auto copy = []<class T>(std::span<const T> some) {
-    return std::vector<T>(some.begin(), some.end());
-  };
-  return {.images = copy(part_of(images, first, last)),
-          .values = copy(part_of(values, first, last)),
-          .costs = copy(part_of(costs, first, last))};
 }
 
 void KeptObservations::whole(std::size_t index, std::span<double> out) const {

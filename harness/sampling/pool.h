@@ -56,9 +56,10 @@ struct KeptObservations {
   std::vector<ChannelSummary> sums_of(std::uint64_t begin, std::uint64_t end) const;
   /// Appends the observations that follow.
   void append(KeptObservations&& next);
-  /// A copy of observations [first, last), as far as they are there, without sums.
-  KeptObservations part(std::uint64_t first, std::uint64_t last) const;
 };
+
+/// Values of the first observations, by channel.
+using KeptValues = std::map<std::size_t, std::vector<double>>;
 
 /// Primaries of an observation; for an image those of every pixel and component.
 std::uint64_t primaries_of_observation(const Setup& setup, std::uint64_t primaries);
@@ -80,9 +81,6 @@ struct Recipe {
   std::uint64_t kept_observations = 0;
   std::vector<std::uint64_t> marks = {};
 };
-
-/// Channels keep values of observations below it.
-std::uint64_t most_kept(std::span<const ChannelPlan> plan);
 
 class Drawn;
 /// Drawn observations, or the fault that prevented them.
@@ -157,7 +155,7 @@ class Pool {
   /// A drawn block, and copies of it at the marks inside.
   struct Block {
     Summary whole;
-    std::vector<std::vector<double>> values = {};  ///< of each channel, if kept
+    KeptValues values = {};
     std::shared_ptr<KeptObservations> observations = std::make_shared<KeptObservations>();
     std::vector<std::pair<std::uint64_t, std::shared_ptr<const Summary>>> partial = {};
     std::optional<Fault> fault = {};
@@ -167,8 +165,8 @@ class Pool {
   };
   /// Draws one observation again.
   void draw_again(Estimator& estimator, std::uint64_t index, std::span<double> out) const;
-  /// True for images that are all kept. Their blocks have neither sums of channels nor values,
-  /// which end_drawing() makes.
+  /// True for images that are all kept. Their blocks have no sums of channels, which end_drawing()
+  /// makes.
   bool sums_later() const { return elements_ > 0 && recipe_.kept_observations >= most_marked(); }
   /// Sums of no observations, as those of a block begin.
   Summary no_sums() const;
@@ -204,7 +202,6 @@ class Pool {
   const KeptObservations& all_kept() const { return known_ ? *known_ : *kept_; }
   std::shared_ptr<const Summary> sums_of_first(std::uint64_t count, const Summary& drawn);
   void take_details(Summary& summary) const;
-  void keep_values();
   void observe(Estimator& estimator, std::uint64_t index, std::span<double> out,
                Block& block) const;
   void read_picture(std::uint64_t index, Block& block) const;
@@ -213,12 +210,11 @@ class Pool {
   std::map<std::uint64_t, std::shared_ptr<const Summary>> prefixes_;
   std::uint64_t requested_ = 0;
   Summary running_;
-  std::vector<std::vector<double>> values_;
+  KeptValues values_;
   /// By channel and number of values: judged once for all tests and looks, on one thread.
   mutable std::map<std::pair<std::size_t, std::size_t>, std::vector<stats::Gate>> order_gates_;
   std::shared_ptr<KeptObservations> kept_ = std::make_shared<KeptObservations>();
   std::shared_ptr<const KeptObservations> known_;
-  std::uint64_t values_taken_ = 0;  ///< kept observations copied to `values_`
   bool keeps_blocks_ = false;
   std::vector<Summary> blocks_;
   std::optional<Fault> fault_;
