@@ -162,7 +162,6 @@ class Ranks::Window {
     int holder = 0;
     Clock::time_point given = {};
     std::unique_ptr<Pool::Block> drawn = {};
-    std::size_t bytes = 0;
   };
 
   Window(Ranks& ranks, Round& round)
@@ -236,9 +235,9 @@ class Ranks::Window {
   bool fold() {
     bool folded = false;
     for (; !empty() && slots_.front().drawn; slots_.pop_front(), ++front_) {
-      Slot& slot = slots_.front();
+      const Slot& slot = slots_.front();
+      waiting_bytes_ -= bytes_of(*slot.drawn);
       round_.fold(slot.task, std::move(*slot.drawn));
-      waiting_bytes_ -= slot.bytes;
       folded = true;
     }
     return folded;
@@ -265,9 +264,8 @@ class Ranks::Window {
   void note(Slot& slot, Pool::Block&& block, double block_seconds, double waited) {
     Usual& usual = usual_[slot.task.pool];
     usual = {block_seconds, std::max(usual.wait, waited)};
-    slot.bytes = bytes_of(block);
+    waiting_bytes_ += bytes_of(block);
     slot.drawn = std::make_unique<Pool::Block>(std::move(block));
-    waiting_bytes_ += slot.bytes;
   }
 
   void give_to(int rank, std::uint64_t number) {
