@@ -221,6 +221,10 @@ reports::LedgerSeries keep(LedgerBook& book, const reports::Record& record, cons
 
 constexpr const char* version_words = "assay-ledger 2 budget ";
 
+constexpr const char* mend =
+    "; restore the file from version control or a backup, or give its nights up: move it away, and "
+    "the next run begins a new one";
+
 constexpr const char* introduction[] = {
     "# Evidence of nights with fresh seeds about each claim (harness/README.md, \"The ledger\").",
     "# An alarm: E >= 1.202 k^3 / (budget x the test's share) in a test's k-th series, where E is "
@@ -439,128 +443,110 @@ void LedgerBook::keep_checked(const std::string& line) {
 std::string LedgerBook::text() const {
   std::string out;
   for (const std::string& line : lines_) out += line + "\n";
-  return out + fmt::format("end {}\n", nights_.size());
+  return out + end() + "\n";
 }
 
-class LedgerReader {
- public:
-  LedgerReader(const std::string& text, std::string file)
-      : file_(std::move(file)), lines_(lines_of(text)) {}
+void LedgerBook::take_begin(const std::string& line, const Location& at) {
+  std::istringstream fields(line.substr(std::strlen("begin")));
+  const std::string test = unquoted(fields);
+  if (!is_read(fields)) {
+    refuse(at,
+           "after `begin` stands the test's id in double quotes, as in the lines of its nights");
+  }
+  if (std::ranges::count(series_, test, &LedgerSeries::test) == 0) {
+    refuse(at, "the ledger has no test {} before this line", in_quotes(test));
+  }
+  begin(test);
+}
 
-  LedgerBook read() {
-    if (lines_.empty() || !lines_[0].starts_with(version_words)) {
-      refuse(
-          "this is no ledger of this version: its first line must be `assay-ledger 2 budget B`; "
-          "name another file for the ledger");
-    }
-    std::istringstream fields(std::string(lines_[0].substr(std::strlen(version_words))));
-    double budget = 0;
-    fields >> budget;
-    if (!is_read(fields) || !is_error_rate(budget)) {
-      refuse("the budget must be a number from 1e-9 to 0.5");
-    }
-    book_ = LedgerBook(budget);
-    book_.lines_ = {std::string(lines_[0])};
-    book_.check_ = text_hash(lines_[0]);
-    for (number_ = 1; number_ < lines_.size(); ++number_) take(std::string(lines_[number_]));
-    if (!ended_) {
-      --number_;
-      refuse("the ledger is cut short after this line: its last line must be `end N`" + mend());
-    }
-    return std::move(book_);
-  }
+void LedgerBook::take_series(const std::string& line) {
+  std::istringstream fields(line);
+  LedgerSeries series;
+  std::string word;
+  fields >> word >> series.hash >> word;
+  if (word == "estimates") fields >> word >> series.reference_error.emplace();
+  fields >> word >> series.weight;
+  series.test = unquoted(fields);
+  series.channel = unquoted(fields);
+  open(series);
+}
 
- private:
-  [[noreturn]] void refuse(const std::string& why) const {
-    throw InputError({file_, static_cast<int>(number_) + 1, 1}, why);
+void LedgerBook::take_night(const std::string& line, const Location& at) {
+  std::istringstream fields(line);
+  LedgerNight night;
+  LedgerSeries of;
+  std::string word;
+  fields >> word >> night.date >> word >> night.seed >> word >> night.commit >> word >> of.hash;
+  fields >> word;
+  if (word == "estimate") {
+    auto& value = night.value.emplace<stats::NightEstimate>();
+    fields >> value.difference >> word >> value.standard_error >> word >> value.observations;
+    fields >> word >> value.effective;
+  } else {
+    fields >> night.value.emplace<NightLogP>();
   }
-  static std::string mend() {
-    return "; restore the file from version control or a backup, or give its nights up: move it "
-           "away, and the next run begins a new one";
-  }
-  [[noreturn]] void changed() const {
-    refuse(
-        "this line, or one before it, was changed, moved, cut or taken out after it was written" +
-        mend());
-  }
+  of.test = unquoted(fields);
+  of.channel = unquoted(fields);
+  const auto series = open_series(of);
+  if (!series) refuse(at, "no open series above has this night's hash and test{}", mend);
+  night.series = *series;
+  add(night);
+}
 
-  /// A series or a night is sound if its check is right, and adding what was read of it writes the
-  /// line again.
-  void take(const std::string& line) {
-    if (line.empty() || line.starts_with("#")) return book_.keep(line);
-    if (line.starts_with("begin ")) return take_begin(line);
-    if (ended_) refuse("`end` must be the last line" + mend());
-    if (line.starts_with("end ")) return take_end(line);
-    const std::string checked = line.substr(0, line.rfind(" | "));
-    if (with_check(checked, text_hash(checked, book_.check_)) != line) changed();
-    line.starts_with("series ") ? take_series(checked) : take_night(checked);
-    if (book_.lines_.back() != line) changed();
+/// A series or a night is sound if its check is right, and adding what was read of it writes the
+/// line again.
+void LedgerBook::take_checked(const std::string& line, const Location& at) {
+  const std::string checked = line.substr(0, line.rfind(" | "));
+  bool sound = with_check(checked, text_hash(checked, check_)) == line;
+  if (sound) {
+    checked.starts_with("series ") ? take_series(checked) : take_night(checked, at);
+    sound = lines_.back() == line;
   }
-
-  void take_begin(const std::string& line) {
-    std::istringstream fields(line.substr(std::strlen("begin")));
-    const std::string test = unquoted(fields);
-    if (!is_read(fields)) {
-      refuse("after `begin` stands the test's id in double quotes, as in the lines of its nights");
-    }
-    if (std::ranges::count(book_.series_, test, &LedgerSeries::test) == 0) {
-      refuse(fmt::format("the ledger has no test {} before this line", in_quotes(test)));
-    }
-    book_.begin(test);
-  }
-
-  void take_end(const std::string& line) {
-    if (line != fmt::format("end {}", book_.nights_.size())) {
-      refuse(fmt::format("the ledger has {} nights before this line: lines were added or taken out",
-                         book_.nights_.size()) +
-             mend());
-    }
-    ended_ = true;
-  }
-
-  void take_series(const std::string& line) {
-    std::istringstream fields(line);
-    LedgerSeries series;
-    std::string word;
-    fields >> word >> series.hash >> word;
-    if (word == "estimates") fields >> word >> series.reference_error.emplace();
-    fields >> word >> series.weight;
-    series.test = unquoted(fields);
-    series.channel = unquoted(fields);
-    book_.open(series);
-  }
-
-  void take_night(const std::string& line) {
-    std::istringstream fields(line);
-    LedgerNight night;
-    LedgerSeries of;
-    std::string word;
-    fields >> word >> night.date >> word >> night.seed >> word >> night.commit >> word >> of.hash;
-    fields >> word;
-    if (word == "estimate") {
-      auto& value = night.value.emplace<stats::NightEstimate>();
-      fields >> value.difference >> word >> value.standard_error >> word >> value.observations;
-      fields >> word >> value.effective;
-    } else {
-      fields >> night.value.emplace<NightLogP>();
-    }
-    of.test = unquoted(fields);
-    of.channel = unquoted(fields);
-    const auto series = book_.open_series(of);
-    if (!series) refuse("no open series above has this night's hash and test" + mend());
-    night.series = *series;
-    book_.add(night);
-  }
-
-  std::string file_;
-  std::vector<std::string_view> lines_;
-  std::size_t number_ = 0;
-  bool ended_ = false;
-  LedgerBook book_;
-};
+  if (sound) return;
+  refuse(at,
+         "this line, or one before it, was changed, moved, cut or taken out after it was written{}",
+         mend);
+}
 
 LedgerBook LedgerBook::parse(const std::string& text, const std::string& file) {
-  return LedgerReader(text, file).read();
+  Location at{file, 1, 1};
+  const std::vector<std::string_view> lines = lines_of(text);
+  if (lines.empty() || !lines[0].starts_with(version_words)) {
+    refuse(at,
+           "this is no ledger of this version: its first line must be `assay-ledger 2 budget B`; "
+           "name another file for the ledger");
+  }
+  const std::string header(lines[0]);
+  std::istringstream fields(header.substr(std::strlen(version_words)));
+  double budget = 0;
+  fields >> budget;
+  if (!is_read(fields) || !is_error_rate(budget)) {
+    refuse(at, "the budget must be a number from 1e-9 to 0.5");
+  }
+  LedgerBook book(budget);
+  book.lines_ = {header};
+  book.check_ = text_hash(header);
+  bool ended = false;
+  for (const std::string_view each : lines | std::views::drop(1)) {
+    const std::string line(each);
+    ++at.line;
+    if (line.empty() || line.starts_with("#")) {
+      book.keep(line);
+    } else if (line.starts_with("begin ")) {
+      book.take_begin(line, at);
+    } else if (ended) {
+      refuse(at, "`end` must be the last line{}", mend);
+    } else if (!line.starts_with("end ")) {
+      book.take_checked(line, at);
+    } else if (line == book.end()) {
+      ended = true;
+    } else {
+      refuse(at, "the ledger has {} nights before this line: lines were added or taken out{}",
+             book.nights_.size(), mend);
+    }
+  }
+  if (ended) return book;
+  refuse(at, "the ledger is cut short after this line: its last line must be `end N`{}", mend);
 }
 
 std::string in_quotes(std::string_view text) {

@@ -103,7 +103,11 @@ class LedgerBook {
   static LedgerBook parse(const std::string& text, const std::string& file);
 
  private:
-  friend class LedgerReader;
+  void take_begin(const std::string& line, const Location& at);
+  void take_series(const std::string& line);
+  void take_night(const std::string& line, const Location& at);
+  void take_checked(const std::string& line, const Location& at);
+  std::string end() const { return "end " + std::to_string(nights_.size()); }
   void keep(const std::string& line) { lines_.push_back(line); }
   void keep_checked(const std::string& line);
 
