@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <deque>
 #include <ranges>
 #include <stdexcept>
 #include <thread>
@@ -36,19 +37,7 @@ double seconds_since(Clock::time_point start) {
 }
 
 /// Waiting in a receive would take a whole core.
-class Pause {
- public:
-  void reset() { next_ = shortest; }
-  void wait() {
-    std::this_thread::sleep_for(next_);
-    next_ = std::min(2 * next_, longest);
-  }
-
- private:
-  static constexpr std::chrono::microseconds shortest{50};
-  static constexpr std::chrono::microseconds longest{2000};
-  std::chrono::microseconds next_ = shortest;
-};
+void sleep_briefly() { std::this_thread::sleep_for(std::chrono::microseconds(300)); }
 
 std::string host_name() {
   std::string name(256, '\0');
@@ -362,7 +351,6 @@ void Ranks::introduce(const NamedSetups& setups) {
     names.insert(name);
   }
   const double limit = std::max(patience, 10 * seconds_since(begun_));
-  Pause pause;
   for (std::size_t missing = ranks_.size() - 1; missing > 0;) {
     stop_if_interrupted();
     if (const auto message = messages_.receive(Messages::anyone)) {
@@ -378,7 +366,7 @@ void Ranks::introduce(const NamedSetups& setups) {
       throw std::runtime_error(
           fmt::format("{} of {} ranks did not answer in {:.0f} s", missing, ranks_.size(), limit));
     }
-    pause.wait();
+    sleep_briefly();
   }
 }
 
@@ -457,18 +445,13 @@ void Ranks::draw(Round& round) {
   ++round_;
   with_threads(threads_, [&] {
     Window window(*this, round);
-    Pause pause;
     for (;;) {
       const bool taken = take_replies(window);
       if (interrupted()) break;
       give(window);
       const bool drawn = window.draw_some(threads_, messages_.arriving());
       if (window.empty()) break;
-      if (drawn || taken) {
-        pause.reset();
-      } else {
-        pause.wait();
-      }
+      if (!drawn && !taken) sleep_briefly();
     }
     for (const auto& pool : round.pools()) pool->end_drawing();
   });
@@ -482,7 +465,6 @@ void Ranks::draw(Round& round) {
 bool dismiss(Messages& messages) try {
   for (int rank = 1; rank < messages.size(); ++rank) messages.send(rank, packed(Kind::end));
   const Clock::time_point start = Clock::now();
-  Pause pause;
   for (int present = messages.size() - 1; present > 0;) {
     if (const auto message = messages.receive(Messages::anyone)) {  // late answers go unread
       Unpacker unpack(unframed(message->bytes));
@@ -492,7 +474,7 @@ bool dismiss(Messages& messages) try {
     } else if (seconds_since(start) > unknown_wait) {
       return false;
     } else {
-      pause.wait();
+      sleep_briefly();
     }
   }
   return true;
@@ -503,14 +485,12 @@ bool dismiss(Messages& messages) try {
 void serve(Messages& messages,
            const std::function<PreparedRank(std::optional<std::uint64_t> seed)>& prepare) {
   Servant servant(messages, prepare);
-  Pause pause;
   for (bool present = true; present;) {
     const auto message = messages.receive(Messages::anyone);
     if (!message) {
-      pause.wait();
+      sleep_briefly();
       continue;
     }
-    pause.reset();
     try {
       present = servant.obey(message->bytes);
     } catch (const std::exception&) {

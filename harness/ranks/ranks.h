@@ -5,7 +5,6 @@
 
 #include <chrono>
 #include <cstdint>
-#include <deque>
 #include <functional>
 #include <map>
 #include <memory>
@@ -31,7 +30,6 @@ class Messages {
   static constexpr int anyone = -1;
 
   virtual ~Messages() = default;
-  virtual int rank() const = 0;  ///< of this process, from 0
   virtual int size() const = 0;
   /// Does not wait for the receiver.
   virtual void send(int to, std::string bytes) = 0;

@@ -41,7 +41,6 @@ using Fate = std::function<std::optional<std::string>(int rank, std::size_t k, s
 class Posted : public Messages {
  public:
   Posted(Post& post, int rank, Fate fate = {}) : post_(post), rank_(rank), fate_(std::move(fate)) {}
-  int rank() const override { return rank_; }
   int size() const override { return post_.size(); }
   void send(int to, std::string bytes) override {
     std::optional<std::string> arrives(std::move(bytes));
