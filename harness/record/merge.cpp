@@ -77,43 +77,27 @@ std::vector<FamilyMember> parts_of(const std::vector<ShardFile>& shards, std::si
   return parts;
 }
 
-/// Takes each estimator's row from the shard that drew most of it.
-std::vector<reports::EstimatorSummary> estimators_of(const std::vector<ShardFile>& shards,
-                                                     std::size_t suite) {
-  std::vector<reports::EstimatorSummary> most = shards.front().record.suites[suite].estimators;
-  for (const ShardFile& shard : shards) {
-    for (const reports::EstimatorSummary& row : shard.record.suites[suite].estimators) {
-      const auto same = std::ranges::find(most, row.name, &reports::EstimatorSummary::name);
-      if (same != most.end() && same->secondaries < row.secondaries) *same = row;
-    }
+/// Adds what another shard has drawn of the suite. Each estimator's row is that of the shard that
+/// drew most of it. A shard lacks the statements without one of its tests.
+void add(const reports::Suite& more, reports::Suite& suite) {
+  suite.timed = suite.timed || more.timed;
+  suite.retries.insert(suite.retries.end(), more.retries.begin(), more.retries.end());
+  for (const reports::EstimatorSummary& row : more.estimators) {
+    const auto same =
+        std::ranges::find(suite.estimators, row.name, &reports::EstimatorSummary::name);
+    if (same != suite.estimators.end() && same->secondaries < row.secondaries) *same = row;
   }
-  return most;
-}
-
-/// The statements of all shards, each once, in the suite's order. A shard lacks those without one
-/// of its tests.
-std::vector<reports::Statement> statements_of(const std::vector<ShardFile>& shards,
-                                              std::size_t suite) {
-  std::map<std::pair<int, std::string>, reports::Statement> by_line;
-  for (const ShardFile& shard : shards) {
-    for (const reports::Statement& statement : shard.record.suites[suite].statements) {
-      by_line.emplace(std::pair(statement.line, statement.text), statement);
-    }
+  for (const reports::Statement& each : more.statements) {
+    if (std::ranges::count(suite.statements, each) == 0) suite.statements.push_back(each);
   }
-  return mapped(by_line, [](const auto& each) { return each.second; });
 }
 
 reports::Suite merge_suite(const std::vector<ShardFile>& shards, std::size_t index, bool& whole) {
   reports::Suite suite = shards.front().record.suites[index];
-  suite.estimators = estimators_of(shards, index);
-  suite.tests.clear();
-  suite.retries.clear();
-  for (const ShardFile& shard : shards) {
-    const std::vector<reports::Retry>& more = shard.record.suites[index].retries;
-    suite.retries.insert(suite.retries.end(), more.begin(), more.end());
+  for (const ShardFile& shard : shards | std::views::drop(1)) {
+    add(shard.record.suites[index], suite);
   }
-  suite.timed = std::ranges::any_of(
-      shards, [&](const ShardFile& shard) { return shard.record.suites[index].timed; });
+  std::ranges::stable_sort(suite.statements, {}, &reports::Statement::line);
   std::vector<FamilyMember> parts = parts_of(shards, index);
   const bool complete = parts.size() == shards.front().record.shard->suites[index].tests &&
                         missing_of(shards).empty();
@@ -126,12 +110,12 @@ reports::Suite merge_suite(const std::vector<ShardFile>& shards, std::size_t ind
            error.what());
   }
   whole = whole && complete;
+  suite.tests.clear();
   for (FamilyMember& part : parts) {
     // The file was beside the shard's record; a report that writes maps names it again.
     for (reports::Map& map : part.test.maps) map.file.clear();
     suite.tests.push_back(std::move(part.test));
   }
-  suite.statements = statements_of(shards, index);
   return suite;
 }
 
