@@ -254,8 +254,8 @@ std::shared_ptr<Pool> Pools::find_or_make(const Subject& side, std::uint64_t pri
   // Asking again may take another time-out.
   if (const Fault* fault = pilots.fault(pilot_name(side))) pool->fail(*fault);
   const auto* draws = dynamic_cast<const SamplerSetup*>(side.setup.get());
-  pool->plan(draws != nullptr ? sampler_plan(*draws)
-                              : estimator_plan(*pool, *side.estimator, pilots));
+  pool->plans() =
+      draws != nullptr ? sampler_plan(*draws) : estimator_plan(*pool, *side.estimator, pilots);
   all_.push_back(pool);
   return pool;
 }

@@ -99,10 +99,8 @@ class Pool {
   std::size_t channels() const { return channels_; }
   /// The first channels, of an image; 0 without one.
   std::size_t elements() const { return elements_; }
-  /// Sets what to keep of each channel beyond moments, before anything is drawn. An image's
-  /// millions of channels need no plans.
-  void plan(std::vector<ChannelPlan> channels) { recipe_.plan = std::move(channels); }
-  /// The plan of each channel, to be changed.
+  /// What to keep of each channel beyond moments, to be changed before anything is drawn. An
+  /// image's millions of channels need no plans: the list may be emptied.
   std::vector<ChannelPlan>& plans();
 
   /// Sums the variances of these channels in groups. Call it before anything is drawn.

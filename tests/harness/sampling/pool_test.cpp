@@ -57,7 +57,7 @@ std::shared_ptr<Pool> drawn(const Wanted& wanted) {
   const StreamKey key = stream_key(1, "test/sums", "", 0);
   auto pool =
       std::make_shared<Pool>(std::make_shared<SumsSetup>(wanted.behaviour), key, wanted.primaries);
-  pool->plan({{.histogram_low = 0, .histogram_high = 1, .keep = 700}, {.keep = 20}});
+  pool->plans() = {{.histogram_low = 0, .histogram_high = 1, .keep = 700}, {.keep = 20}};
   for (const std::uint64_t count : wanted.prefixes) pool->request(count);
   draw_all({pool}, *threads(wanted.threads), "sampling", silence);
   return pool;
