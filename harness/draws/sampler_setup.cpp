@@ -37,42 +37,34 @@ stats::TabulatedLaw law_of(const NamedSampler& named, std::size_t marginal,
   return stats::tabulate(stats::marginal_density(density, rule), parts, rule);
 }
 
-/// A sampler whose draws are the observations of an estimator.
-class SamplerEstimator final : public Estimator {
+/// Its observations are what `write` makes of a sampler's draws.
+class DrawsEstimator final : public Estimator {
  public:
-  explicit SamplerEstimator(const SamplerSetup& setup)
-      : setup_(setup), marginals_(setup.marginals()), density_cells_(setup.cells_asked_for()) {}
+  using Write = std::function<void(const AskedDraw&, std::span<double>)>;
+  DrawsEstimator(const NamedSampler& named, PointNumbers asked, Write write)
+      : sampler_(*named.sampler), draws_(named, asked), write_(std::move(write)) {}
 
   void announce(const Announcement& next) override { draws_.announce(next); }
-  double seconds_elsewhere() const override { return setup_.sampler().seconds_elsewhere(); }
-
+  double seconds_elsewhere() const override { return sampler_.seconds_elsewhere(); }
   void secondary(Stream& random, std::uint64_t, std::span<double> out, Cost& cost) override {
-    const AskedDraw& asked = draws_.of(random);
-    const SamplerDraw draw = sound(setup_.named(), asked.draw);
-    const bool point = has_density(setup_.sampler(), draw);
-    for (std::size_t i = 0; i < marginals_.size(); ++i) {
-      out[i] = point ? marginals_[i].coordinate(draw.point) : no_point(marginals_[i]);
-    }
-    out[marginals_.size()] = density_cells_ ? number_of(asked, draw) : no_cell;
+    write_(draws_.of(random), out);
     cost.samples += 1;
   }
 
  private:
-  double number_of(const AskedDraw& asked, const SamplerDraw& draw) const {
-    const DrawCells& cells = density_cells_->cells;
-    const Point& point = asked.draw.point;
-    const bool impossible =
-        asked.density && is_impossible(setup_.sampler(), point,
-                                       sound_density(setup_.named(), point, *asked.density));
-    return static_cast<double>(cells.index(draw) + (impossible ? cells.size() : 0));
-  }
-
-  const SamplerSetup& setup_;
-  std::vector<Marginal> marginals_;
-  std::shared_ptr<const DensityCells> density_cells_;
-  /// Only a claim that counts in cells asks for the density at each draw.
-  AskedDraws draws_{setup_.named(), density_cells_ ? PointNumbers::densities : PointNumbers::none};
+  const Sampler& sampler_;
+  AskedDraws draws_;
+  Write write_;
 };
+
+std::size_t number_of(const NamedSampler& named, const DrawCells& cells, const AskedDraw& asked,
+                      const SamplerDraw& draw) {
+  const Point& point = asked.draw.point;
+  const bool impossible =
+      asked.density &&
+      is_impossible(*named.sampler, point, sound_density(named, point, *asked.density));
+  return cells.index(draw) + (impossible ? cells.size() : 0);
+}
 
 double relative_difference(double a, double b) {
   if (a == b) return 0;
@@ -107,31 +99,6 @@ std::string contradiction(const AskedDraw& asked) {
   return fmt::format("weight x density is {:.{}g}, but evaluate is {:.{}g}", weight * density,
                      digits, asked.evaluation, digits);
 }
-
-class ConsistencyEstimator final : public Estimator {
- public:
-  explicit ConsistencyEstimator(const ConsistencySetup& setup)
-      : setup_(setup), rounding_(setup.sampler().rounding()) {}
-
-  void announce(const Announcement& next) override { draws_.announce(next); }
-  double seconds_elsewhere() const override { return setup_.sampler().seconds_elsewhere(); }
-
-  void secondary(Stream& random, std::uint64_t, std::span<double> out, Cost& cost) override {
-    const NamedSampler& named = setup_.named();
-    const AskedDraw& asked = draws_.of(random);
-    if (asked.density.value_or(0) < 0) sound_density(named, asked.draw.point, *asked.density);
-    out[1] = difference_of(asked);
-    const bool consistent = out[1] <= rounding_;
-    out[0] =
-        consistent ? 0 : 1 + static_cast<double>(setup_.cells().index(sound(named, asked.draw)));
-    cost.samples += 1;
-  }
-
- private:
-  const ConsistencySetup& setup_;
-  double rounding_;
-  AskedDraws draws_{setup_.named(), PointNumbers::densities_and_evaluations};
-};
 
 }  // namespace
 
@@ -213,7 +180,20 @@ Channel SamplerSetup::channel(std::size_t place) const {
 }
 
 std::unique_ptr<Estimator> SamplerSetup::make() const {
-  return std::make_unique<SamplerEstimator>(*this);
+  // Only a claim that counts in cells asks for the density at each draw.
+  const std::shared_ptr<const DensityCells> counted = cells_asked_for();
+  const PointNumbers numbers = counted ? PointNumbers::densities : PointNumbers::none;
+  const auto write = [this, counted, all = marginals()](const AskedDraw& asked,
+                                                        std::span<double> out) {
+    const SamplerDraw draw = sound(named_, asked.draw);
+    const bool point = has_density(sampler(), draw);
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      out[i] = point ? all[i].coordinate(draw.point) : no_point(all[i]);
+    }
+    out[all.size()] =
+        counted ? static_cast<double>(number_of(named_, counted->cells, asked, draw)) : no_cell;
+  };
+  return std::make_unique<DrawsEstimator>(named_, numbers, write);
 }
 
 /// A density that failed is not asked for again: each time may take a time-out.
@@ -314,7 +294,13 @@ Channel ConsistencySetup::channel(std::size_t place) const {
 }
 
 std::unique_ptr<Estimator> ConsistencySetup::make() const {
-  return std::make_unique<ConsistencyEstimator>(*this);
+  const auto write = [this](const AskedDraw& asked, std::span<double> out) {
+    if (asked.density.value_or(0) < 0) sound_density(named(), asked.draw.point, *asked.density);
+    out[1] = difference_of(asked);
+    const bool consistent = out[1] <= sampler().rounding();
+    out[0] = consistent ? 0 : 1 + static_cast<double>(cells_.index(sound(named(), asked.draw)));
+  };
+  return std::make_unique<DrawsEstimator>(named(), PointNumbers::densities_and_evaluations, write);
 }
 
 std::optional<std::pair<std::uint64_t, std::string>> first_inconsistent(const Pool& pool,
