@@ -73,7 +73,6 @@ struct LedgerNight {
   bool operator==(const LedgerNight&) const = default;
 };
 
-/// A whole ledger, in the order of its lines.
 class LedgerBook {
  public:
   explicit LedgerBook(double budget = default_ledger_budget);
@@ -155,9 +154,6 @@ Moved moved(const LedgerSeries& series, const std::vector<LedgerNight>& nights,
 /// The share of a test's error budget for its k-th series: 1 / (zeta(3) k^3). The shares sum to 1,
 /// so a claim keeps its budget however often it is changed or begun anew. The first has 0.83.
 double generation_share(int generation);
-
-// `--ledger FILE`: keeps the evidence of nights with fresh seeds, with its own error budget. Many
-// nights together find a bias that each one misses.
 
 /// InputError, before anything is sampled, if a ledger could not be kept. Reasons are an unreadable
 /// file and a missing folder.

@@ -59,7 +59,6 @@ bool tell_broken(const reports::Test& test, const Output& output);
 void write_run(reports::Record& record, const Output& output,
                const std::set<std::string>& told = {});
 
-/// The exit code, as `assay help all` explains it.
 int exit_code(const reports::Record&, InconclusivePolicy);
 
 /// Returns annotations of GitHub Actions to print; "" unless GITHUB_ACTIONS is `true`. It also
@@ -84,7 +83,6 @@ reports::Environment this_environment(unsigned threads);
 std::string utc_now();
 
 void add_note(reports::Record& record, const std::string& note);
-/// Adds a note on the programs that were started again.
 void note_retries(reports::Record& record);
 
 /// The note of a record without some tests of its suites.

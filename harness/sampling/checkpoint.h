@@ -48,7 +48,6 @@ class Checkpoint final : public Executor {
   /// Call it when the run's reports are written.
   void remove() const;
 
-  /// The name of the file that grows.
   static std::string kept_file(const std::string& file) { return file + ".kept"; }
 
  private:

@@ -39,7 +39,6 @@ class Round {
   const SomePools& pools() const { return pools_; }
   /// The next block to draw; nullopt after the last, and when the user interrupts.
   std::optional<Task> next();
-  /// How many blocks next() will give.
   std::uint64_t blocks_left() const;
   /// Adds a drawn block to its pool. Blocks come in the order of next().
   void fold(const Task& task, Pool::Block&& block);
@@ -78,10 +77,8 @@ class Executor {
 
 /// The threads of this process; 0: all cores.
 std::shared_ptr<Executor> threads(unsigned count = 0);
-/// Who draws in a run with these options.
 std::shared_ptr<Executor> executor_of(const RunOptions& options);
 
-/// Draws every pool up to its request.
 void draw_all(const SomePools& pools, Executor& executor, const std::string& phase,
               Progress& progress);
 

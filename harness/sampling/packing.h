@@ -150,7 +150,6 @@ class BinaryArchive {
 using Packer = BinaryArchive<true>;
 using Unpacker = BinaryArchive<false>;
 
-/// The beginning of a frame.
 inline constexpr std::string_view magic = "assay ";
 
 std::string framed(std::string_view bytes);

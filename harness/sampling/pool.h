@@ -50,11 +50,9 @@ struct KeptObservations {
   std::map<std::uint64_t, std::shared_ptr<const Summary>> sums = {};
 
   std::size_t size() const { return costs.size(); }
-  /// Copies all channels of one observation.
   void whole(std::size_t index, std::span<double> out) const;
   /// The summary of every channel over observations [begin, end) of images.
   std::vector<ChannelSummary> sums_of(std::uint64_t begin, std::uint64_t end) const;
-  /// Appends the observations that follow.
   void append(KeptObservations&& next);
 };
 
@@ -117,7 +115,6 @@ class Pool {
     recipe_.kept_observations = std::max(recipe_.kept_observations, count);
   }
 
-  /// The kept observations, to share with another pool.
   std::shared_ptr<const KeptObservations> kept() const { return kept_; }
   /// Takes these observations, rows of files, instead of drawing them. Call it before anything is
   /// drawn.
@@ -143,7 +140,6 @@ class Pool {
   /// CPU seconds of drawing up to the largest marked count that was requested and is drawn.
   double seconds() const;
 
-  // For the scheduler. Observations per block are a function of `primaries` alone.
   std::uint64_t block_size() const { return block_size_; }
   /// The end of the block that begins at `first`. Blocks are drawn whole even beyond the request,
   /// so that a later look continues as one run. The last block ends at the last mark: another
@@ -158,15 +154,12 @@ class Pool {
     std::vector<std::pair<std::uint64_t, std::shared_ptr<const Summary>>> partial = {};
     std::optional<Fault> fault = {};
 
-    /// Adds what is kept of the observations that follow.
     void append_kept(Block&& next);
   };
-  /// Draws one observation again.
   void draw_again(Estimator& estimator, std::uint64_t index, std::span<double> out) const;
   /// True for images that are all kept. Their blocks have no sums of channels, which end_drawing()
   /// makes.
   bool sums_later() const { return elements_ > 0 && recipe_.kept_observations >= most_marked(); }
-  /// Sums of no observations, as those of a block begin.
   Summary no_sums() const;
   /// Sums of all that is drawn, as one block that keeps nothing.
   Block drawn_sums() const;
@@ -224,12 +217,10 @@ class Drawn {
   const Pool& pool() const { return *pool_; }
   const Summary& summary() const { return *summary_; }
   std::shared_ptr<const Summary> shared_summary() const { return summary_; }
-  /// The kept values of a channel.
   std::span<const double> values(std::size_t channel) const;
   /// Gates on the order of a channel's first kept values (stats::drawn_order_gates). Values that
   /// are not finite have no order.
   const std::vector<stats::Gate>& order_gates(std::size_t channel) const;
-  /// The first kept images, at most `most`.
   Images images(std::uint64_t most = std::numeric_limits<std::uint64_t>::max()) const;
   /// All blocks drawn so far, also of later observations, if the pool keeps them.
   std::span<const Summary> blocks() const { return pool_->blocks_; }

@@ -65,7 +65,6 @@ class RecordedRun final : public Setup {
 
   std::size_t channel_count() const override { return names.size(); }
   Channel channel(std::size_t place) const override { return {.name = names[place]}; }
-  /// Throws std::logic_error: there are no observations.
   std::unique_ptr<Estimator> make() const override;
   std::optional<std::uint64_t> observations() const override { return summary.count; }
   std::optional<Nature> nature() const override { return Nature{.averages = averages}; }
@@ -74,7 +73,6 @@ class RecordedRun final : public Setup {
   bool knows_cost(CostKind kind) const;
 };
 
-/// The set-up as moments of an earlier run, or null.
 const RecordedRun* as_recorded_run(const Setup& setup);
 
 }  // namespace assay::harness

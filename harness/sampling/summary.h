@@ -59,7 +59,6 @@ struct ChannelPlan {
 
 inline constexpr std::size_t histogram_bins = 60;
 
-/// Results beside the moments of a channel.
 struct ChannelDetails {
   Histogram histogram = {};
   std::vector<std::uint64_t> cells = {};
@@ -67,7 +66,6 @@ struct ChannelDetails {
   std::vector<stats::JointSums> joint = {};
 };
 
-/// One channel of consecutive observations.
 using ChannelSummary = stats::FiniteMoments;
 
 // ---- Sums over pictures of millions of elements, whose rows are read once.
@@ -145,11 +143,10 @@ std::vector<stats::JointMoments> joint_moments(const ChannelDetails& details);
 /// Takes a value, if it is finite, and its observation's cost.
 void add_details(ChannelDetails& details, double value, const ObservationCost& cost);
 
-/// An error message if the powers of what `name` drew cannot be computed with, else "".
+/// An error message if powers or moments of `name` cannot be computed with, else "". The eighth or
+/// fourth power of the spread may overflow, or underflow to nothing. The observations must not all
+/// be equal.
 std::string beyond_doubles(const stats::JointMoments& powers, const std::string& name);
-
-/// An error message if moments of `name` cannot be computed with, else "". The fourth power of the
-/// spread may overflow, or underflow to nothing. The observations must not all be equal.
 std::string beyond_doubles(const stats::Moments& moments, const std::string& name);
 
 /// The summary of every element over the images, at least one. It has moments of the finite values.
