@@ -45,6 +45,11 @@ std::string host_name() {
   return name.c_str();
 }
 
+/// Adds what was prepared to the identity of a run.
+void add_names(const NamedSetups& setups, Identity& identity) {
+  for (const auto& [name, setup] : setups) identity.emplace_back("`" + name + "`", "prepared");
+}
+
 struct NamedRecipe {
   std::uint64_t pool = 0;
   std::string setup = "";
@@ -91,10 +96,9 @@ class Servant {
     } catch (const std::exception&) {
       fault = "cannot prepare the run: " + words_of(std::current_exception());
     }
-    std::set<std::string> names;
-    for (const auto& [name, setup] : prepared_.setups) names.insert(name);
-    messages_.send(0, packed(Kind::hello, host_name(), fault, prepared_.identity,
-                             std::vector(names.begin(), names.end()), prepared_.threads));
+    Identity identity = prepared_.identity;
+    add_names(prepared_.setups, identity);
+    messages_.send(0, packed(Kind::hello, host_name(), fault, identity, prepared_.threads));
   }
 
   void draw(Unpacker& unpack) {
@@ -322,40 +326,30 @@ std::string Ranks::name_of(int rank) const {
   return fmt::format("rank {}{}", rank, host.empty() ? "" : " on " + host);
 }
 
-void Ranks::greet(const Messages::Message& message, const std::set<std::string>& names) {
+void Ranks::greet(const Messages::Message& message) {
   Rank& rank = ranks_[static_cast<std::size_t>(message.from)];
   Unpacker unpack(unframed(message.bytes));
   Kind kind{};
   Identity identity;
   std::string fault;
-  std::vector<std::string> prepared;
-  unpack(kind, rank.host, fault, identity, prepared, rank.threads);
+  unpack(kind, rank.host, fault, identity, rank.threads);
   unpack.end();
   if (const auto other = difference(identity_, identity); other && fault.empty()) {
     fault = fmt::format("is of another run: {} is {} there and {} here", other->name, other->theirs,
                         other->ours);
   }
-  for (const std::string& name : prepared) {
-    if (!names.contains(name)) fault = fmt::format("has `{}`, which rank 0 lacks", name);
-  }
-  if (fault.empty() && prepared.size() != names.size()) {
-    fault = "could not prepare all estimators that rank 0 has";
-  }
   if (!fault.empty()) refuse({}, "{} {}", name_of(message.from), fault);
 }
 
 void Ranks::introduce(const NamedSetups& setups) {
-  std::set<std::string> names;
-  for (const auto& [name, setup] : setups) {
-    names_.emplace(setup, name);
-    names.insert(name);
-  }
+  for (const auto& [name, setup] : setups) names_.emplace(setup, name);
+  add_names(setups, identity_);
   const double limit = std::max(patience, 10 * seconds_since(begun_));
   for (std::size_t missing = ranks_.size() - 1; missing > 0;) {
     stop_if_interrupted();
     if (const auto message = messages_.receive(Messages::anyone)) {
       try {
-        greet(*message, names);
+        greet(*message);
       } catch (const Unpackable& refusal) {
         refuse({}, "{} sent no greeting: {}", name_of(message->from), refusal.what());
       }

@@ -80,7 +80,7 @@ class Ranks final : public Executor {
   };
 
   std::string name_of(int rank) const;
-  void greet(const Messages::Message& message, const std::set<std::string>& names);
+  void greet(const Messages::Message& message);
   bool take_replies(Window& window);
   void take_reply(const Messages::Message& message, Window& window);
   void give(Window& window);

@@ -166,7 +166,7 @@ TEST(Ranks, OfAnotherRunAreRefusedByName) {
               }),
               HasSubstr(" is of another run: the version is 0.0.1 there and none here"));
   EXPECT_THAT(refusal([&] { run_in_ranks(kinds, {.ranks = 2, .suite_there = process}); }),
-              HasSubstr(", which rank 0 lacks"));
+              HasSubstr("` is none there and prepared here"));
   EXPECT_THAT(refusal([&] { run_in_ranks(kinds, {.ranks = 2, .suite_there = "none.yaml"}); }),
               HasSubstr("cannot prepare the run: cannot read `none.yaml`"));
 }
