@@ -1,18 +1,11 @@
 #include "harness/sampling/packing.h"
 
-#include <array>
 #include <functional>
 
 namespace assay::harness {
 namespace {
 
-constexpr char format = '8';  // Another one for each change of what is packed.
-
-struct Head {
-  std::array<char, 8> name{'a', 's', 's', 'a', 'y', ' ', format, '\n'};
-  std::uint64_t byte_order = 0x0102030405060708U;
-  std::uint64_t size = 0;
-};
+constexpr std::string_view head = "assay 8\n";  // Another one for each change of what is packed.
 
 /// Processes of one identity have the same standard library.
 std::uint64_t checksum_of(std::string_view bytes) { return std::hash<std::string_view>()(bytes); }
@@ -20,31 +13,24 @@ std::uint64_t checksum_of(std::string_view bytes) { return std::hash<std::string
 }  // namespace
 
 std::string framed(std::string_view bytes) {
-  const Head head{.size = bytes.size()};
   const std::uint64_t checksum = checksum_of(bytes);
   std::string frame;
-  frame.reserve(sizeof head + bytes.size() + sizeof checksum);
-  frame.append(reinterpret_cast<const char*>(&head), sizeof head);
+  frame.reserve(head.size() + bytes.size() + sizeof checksum);
+  frame += head;
   frame += bytes;
-  frame.append(reinterpret_cast<const char*>(&checksum), sizeof checksum);
-  return frame;
+  return frame.append(reinterpret_cast<const char*>(&checksum), sizeof checksum);
 }
 
 std::string_view unframed(std::string_view frame) {
-  Head head;
-  Unpacker::require(frame.starts_with(magic) && frame.size() >= sizeof head,
-                    "it was not written by Assay");
-  std::memcpy(&head, frame.data(), sizeof head);
-  Unpacker::require(head.name == Head().name, "it is of another version of Assay");
-  Unpacker::require(head.byte_order == Head().byte_order,
-                    "it is of a machine with another order of bytes");
-  frame.remove_prefix(sizeof head);
   std::uint64_t checksum = 0;
-  Unpacker::require(frame.size() >= sizeof checksum && frame.size() - sizeof checksum == head.size,
-                    "it is cut short, or more follows it");
-  std::memcpy(&checksum, frame.data() + head.size, sizeof checksum);
+  Unpacker::require(frame.starts_with(magic) && frame.size() >= head.size() + sizeof checksum,
+                    "it was not written by Assay");
+  Unpacker::require(frame.starts_with(head), "it is of another version of Assay");
+  frame.remove_prefix(head.size());
+  std::memcpy(&checksum, frame.data() + frame.size() - sizeof checksum, sizeof checksum);
   frame.remove_suffix(sizeof checksum);
-  Unpacker::require(checksum == checksum_of(frame), "it is damaged: its checksum differs");
+  Unpacker::require(checksum == checksum_of(frame),
+                    "it is cut short or damaged: its checksum differs");
   return frame;
 }
 

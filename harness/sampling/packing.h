@@ -1,7 +1,7 @@
 #pragma once
 
 // Plain data between processes of one version of Assay. Numbers go by their bits, lists after their
-// lengths. A frame around the data tells their format and byte order, and ends with a checksum.
+// lengths. A frame around the data tells their version, and ends with a checksum.
 //
 // A recipe lets another process draw blocks of a pool. It returns them as plain data. The checksum
 // alone tells that they are whole: both processes have one identity.
@@ -153,8 +153,8 @@ using Unpacker = BinaryArchive<false>;
 inline constexpr std::string_view magic = "assay ";
 
 std::string framed(std::string_view bytes);
-/// The bytes in a frame. Throws Unpackable for another format or byte order, and for data that are
-/// cut short or damaged.
+/// The bytes in a frame. Throws Unpackable for another version, and for data that are cut short or
+/// damaged.
 std::string_view unframed(std::string_view frame);
 
 template <class... T>

@@ -156,8 +156,9 @@ TEST(Ranks, ThatSendDamagedAnswersAreNamed) {
     if (k == 1) bytes.back() = static_cast<char>(bytes.back() ^ 1);
     return bytes;
   };
-  EXPECT_THAT(thrown([&] { run_in_ranks(kinds, {.ranks = 2, .fate = damages}); }),
-              AllOf(HasSubstr("rank 1 on "), HasSubstr("sent what cannot be read: it is damaged")));
+  EXPECT_THAT(
+      thrown([&] { run_in_ranks(kinds, {.ranks = 2, .fate = damages}); }),
+      AllOf(HasSubstr("rank 1 on "), HasSubstr("sent what cannot be read: it is cut short")));
 }
 
 TEST(Ranks, OfAnotherRunAreRefusedByName) {
