@@ -1,11 +1,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <filesystem>
 #include <limits>
 #include <optional>
+#include <regex>
 
 #include "estimators/map_file.h"
 #include "harness/base/identity.h"
@@ -68,24 +68,20 @@ reports::Map map_of(const char* name, const ImageShape& shape, const Value& valu
               mapped_indices(shape.elements(), [&](std::size_t i) { return narrow(value(i)); })}};
 }
 
-void add_moments(const DrawnTest& drawn, std::size_t subject, reports::Test& test) {
-  const Subject& side = drawn.outcome.question.subjects[subject];
-  const Summary& summary = drawn.samples[subject].summary();
-  const auto moments = [&](std::size_t i) { return summary.moments(side.channels[i]); };
-  const auto add = [&](const char* name, const auto& value) {
-    test.maps.emplace_back(map_of(name, *side.image, value)).source = side.estimator->listed;
-  };
-  add(subject == 0 ? "mean" : "other_mean", [&](std::size_t i) { return moments(i).mean; });
-  add(subject == 0 ? "variance" : "other_variance",
-      [&](std::size_t i) { return moments(i).variance(); });
-}
-
 void add_maps(const DrawnTest& drawn, const ImageOutcome& outcome, reports::Test& test) {
   const Question& question = drawn.outcome.question;
   const ImageShape& shape = *question.subjects[0].image;
   test.maps.push_back(map_of("z", shape, [&](std::size_t i) { return outcome.z[i]; }));
   for (std::size_t subject = 0; subject < question.subjects.size(); ++subject) {
-    add_moments(drawn, subject, test);
+    const Subject& side = question.subjects[subject];
+    const Summary& summary = drawn.samples[subject].summary();
+    const auto moments = [&](std::size_t i) { return summary.moments(side.channels[i]); };
+    const auto add = [&](const char* name, const auto& value) {
+      test.maps.emplace_back(map_of(name, *side.image, value)).source = side.estimator->listed;
+    };
+    add(subject == 0 ? "mean" : "other_mean", [&](std::size_t i) { return moments(i).mean; });
+    add(subject == 0 ? "variance" : "other_variance",
+        [&](std::size_t i) { return moments(i).variance(); });
   }
   if (question.of_two()) return;
   test.maps.push_back(map_of("reference", shape, [&](std::size_t i) {
@@ -96,11 +92,8 @@ void add_maps(const DrawnTest& drawn, const ImageOutcome& outcome, reports::Test
 /// A unique file name of letters, digits, `-` and `_` for each test.
 std::string file_name(const std::string& id) {
   constexpr std::size_t longest = 80;
-  std::string name = id.substr(0, longest);
-  std::ranges::replace_if(
-      name, [](unsigned char c) { return std::isalnum(c) == 0 && c != '-'; }, '_');
-  const auto again = std::ranges::unique(name, [](char a, char b) { return a == '_' && b == '_'; });
-  name.erase(again.begin(), again.end());
+  const std::string name =
+      std::regex_replace(id.substr(0, longest), std::regex("[^A-Za-z0-9-]+"), "_");
   return fmt::format("{}-{:08x}.exr", name, text_hash(id) & 0xffffffff);
 }
 
