@@ -20,7 +20,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-enum class Kind : std::uint8_t { begin, batch, forget, end, hello, reply, failed, goodbye };
+enum class Kind : std::uint8_t { begin, batch, end, hello, reply, failed, goodbye };
 
 // A rank has one batch to draw and one that waits.
 constexpr std::size_t most_batches = 2;
@@ -75,7 +75,6 @@ class Servant {
     unpack(kind);
     if (kind == Kind::begin) begin(unpack);
     if (kind == Kind::batch) draw(unpack);
-    if (kind == Kind::forget) round_.reset();
     if (kind == Kind::end) messages_.send(0, packed(Kind::goodbye));
     return kind != Kind::end;
   }
@@ -83,6 +82,7 @@ class Servant {
  private:
   /// Pools of a round by rank 0's recipes, and who draws their blocks.
   struct DrawnRound {
+    std::uint64_t number;
     SomePools pools = {};
     DrawBlock draw = drawing_of(pools);
   };
@@ -103,12 +103,13 @@ class Servant {
 
   void draw(Unpacker& unpack) {
     std::uint64_t number = 0;
+    std::uint64_t round = 0;
     std::vector<NamedRecipe> recipes;
     std::vector<Task> orders;
-    unpack(number, recipes, orders);
+    unpack(number, round, recipes, orders);
     unpack.end();
     const Clock::time_point start = Clock::now();
-    if (!round_) round_ = std::make_unique<DrawnRound>();
+    if (!round_ || round_->number != round) round_ = std::make_unique<DrawnRound>(round);
     for (const NamedRecipe& each : recipes) add(each);
     const std::vector<Pool::Block> blocks = drawn(orders);
     // Programs may have stopped for the same signal.
@@ -287,7 +288,7 @@ class Ranks::Window {
   /// Drops this rank's next blocks of pools that failed; false if no block remains.
   bool skip_failed() {
     for (; !own_.empty() && pool(at(own_.front())).fault(); own_.pop_front()) {
-      keep(slots_[own_.front() - front_], Pool::Block(), 0);
+      slots_[own_.front() - front_].drawn = std::make_unique<Pool::Block>();
     }
     return !own_.empty();
   }
@@ -428,7 +429,7 @@ void Ranks::give(Window& window) {
         if (!to.recipes.insert(slot.task.pool).second) continue;
         recipes.push_back({slot.task.pool, names_.at(pool.setup()), pool.recipe()});
       }
-      messages_.send(rank, packed(Kind::batch, next_batch_, recipes, orders));
+      messages_.send(rank, packed(Kind::batch, next_batch_, round_, recipes, orders));
       batches_[next_batch_++] = {rank, round_, std::move(slots), Clock::now()};
       ++to.batches;
     }
@@ -437,6 +438,7 @@ void Ranks::give(Window& window) {
 
 void Ranks::draw(Round& round) {
   ++round_;
+  for (Rank& each : ranks_) each.recipes.clear();
   with_threads(threads_, [&] {
     Window window(*this, round);
     for (;;) {
@@ -449,11 +451,6 @@ void Ranks::draw(Round& round) {
     }
     for (const auto& pool : round.pools()) pool->end_drawing();
   });
-  for (int rank = 1; rank < messages_.size(); ++rank) {
-    Rank& each = ranks_[static_cast<std::size_t>(rank)];
-    if (!each.recipes.empty()) messages_.send(rank, packed(Kind::forget));
-    each.recipes.clear();
-  }
 }
 
 bool dismiss(Messages& messages) try {

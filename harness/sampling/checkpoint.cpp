@@ -82,8 +82,8 @@ void Checkpoint::update(const std::string& recipe, WrittenPool& written, const P
   std::uint64_t first = written.sums.whole.count;
   for (; first < pool.kept_end(); first += pool.block_size()) {
     const std::uint64_t last = std::min(first + pool.block_size(), pool.kept_end());
-    const std::string part = packed(hash, first, pool.kept_block(first, last));
-    next.kept.push_back({first, kept_->size(), part.size()});
+    const std::string part = packed(hash, pool.kept_block(first, last));
+    next.kept.push_back({kept_->size(), part.size()});
     kept_->append(part);
   }
   written = std::move(next);
@@ -131,11 +131,9 @@ void Checkpoint::resume(const std::string& recipe, const WrittenPool& written, P
   try {
     for (const KeptPart& part : written.kept) {
       std::uint64_t hash = 0;
-      std::uint64_t observation = 0;
       Pool::Block kept;
-      unpack(kept_->read(part.place, part.size), hash, observation, kept);
-      Unpacker::require(hash == expected && observation == part.observation,
-                        "it holds other observations");
+      unpack(kept_->read(part.place, part.size), hash, kept);
+      Unpacker::require(hash == expected, "it holds other observations");
       block.append_kept(std::move(kept));
     }
   } catch (const Unpackable& refusal) {

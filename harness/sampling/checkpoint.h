@@ -14,9 +14,8 @@
 
 namespace assay::harness {
 
-/// This part of FILE.kept has what a pool keeps from `observation` on.
+/// This part of FILE.kept has what a pool keeps of a block.
 struct KeptPart {
-  std::uint64_t observation;
   std::uint64_t place;
   std::uint64_t size;
 };
