@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <stdexcept>
 #include <utility>
@@ -21,6 +23,84 @@ double share_of_rest(double v, double u) {
   const double rest = 1 - u;
   if (v > rest) return 1;
   return rest > 0 ? v / rest : 0;
+}
+
+/// A coordinate's value; for an angle also sine and cosine.
+struct Coordinate {
+  double value;
+  double cosine = 0;
+  double sine = 0;
+};
+
+/// Maps a domain to a rectangle, so that cells and marginals of all domains are those of a
+/// rectangle. Hemisphere and sphere: theta and phi, density per solid angle times sin theta.
+/// Square: u and v. Triangle: u and v / (1 - u), times 1 - u. Its second marginal has v and
+/// u / (1 - v).
+struct DomainChart {
+  Domain domain;
+  bool turned;  ///< True if its first coordinate is the second marginal.
+  stats::Span first;
+  stats::Span second;
+
+  Coordinate coordinate(double value) const {
+    if (!has_directions(domain)) return {.value = value};
+    return {.value = value, .cosine = std::cos(value), .sine = std::sin(value)};
+  }
+  Point point(const Coordinate& a, const Coordinate& b) const {
+    if (has_directions(domain)) {
+      const Coordinate& theta = turned ? b : a;
+      const Coordinate& phi = turned ? a : b;
+      return {theta.sine * phi.cosine, theta.sine * phi.sine, theta.cosine};
+    }
+    const double other = domain == Domain::triangle ? b.value * (1 - a.value) : b.value;
+    return turned ? Point{other, a.value, 0} : Point{a.value, other, 0};
+  }
+  double jacobian(const Coordinate& a, const Coordinate& b) const {
+    if (has_directions(domain)) return turned ? b.sine : a.sine;
+    return domain == Domain::triangle ? 1 - a.value : 1;
+  }
+  std::array<double, 2> coordinates(const Point& p) const {
+    static const std::vector<Marginal> angles = marginals(Domain::sphere);
+    const bool directions = has_directions(domain);
+    std::array<double, 2> both{directions ? angles[0].coordinate(p) : p[0],
+                               directions ? angles[1].coordinate(p) : p[1]};
+    if (turned) std::swap(both[0], both[1]);
+    if (domain == Domain::triangle) both[1] = share_of_rest(both[1], both[0]);
+    return both;
+  }
+};
+
+/// A cache of coordinates: quadrature meets the same values in every row of cells, and sine and
+/// cosine cost more than most densities. Each slot remembers the latest value.
+class RememberedCoordinates {
+ public:
+  explicit RememberedCoordinates(const DomainChart& chart) : chart_(chart) {}
+
+  const Coordinate& operator()(double value) {
+    // Knuth's multiplicative hashing by the golden ratio.
+    const auto hash = std::bit_cast<std::uint64_t>(value) * 0x9E3779B97F4A7C15;
+    Coordinate& known = table_[hash >> (64 - bits)];
+    if (known.value != value) known = chart_.coordinate(value);
+    return known;
+  }
+
+ private:
+  static constexpr int bits = 12;
+
+  DomainChart chart_;
+  std::vector<Coordinate> table_ = std::vector<Coordinate>(
+      std::size_t{1} << bits, {.value = std::numeric_limits<double>::quiet_NaN()});
+};
+
+/// The chart whose first coordinate is this marginal, 0 or 1. Not for intervals.
+DomainChart chart_by(Domain domain, std::size_t marginal) {
+  DomainChart chart{.domain = domain, .turned = marginal == 1, .first = {0, 1}, .second = {0, 1}};
+  if (has_directions(domain)) {
+    chart.first = {0, domain == Domain::hemisphere ? pi / 2 : pi};
+    chart.second = {0, 2 * pi};
+  }
+  if (chart.turned) std::swap(chart.first, chart.second);
+  return chart;
 }
 
 // The first coordinate below which this share of the domain's measure lies.
@@ -163,6 +243,50 @@ class OnChart {
   std::vector<double> jacobians_;
 };
 
+/// Points that a sampler draws show the quadrature where its density has peaks.
+stats::LineDensity line_density(const Sampler& sampler, std::span<const Point> drawn,
+                                Densities densities) {
+  const auto values = [densities = std::move(densities)](std::span<const double> x,
+                                                         std::span<double> out) {
+    write_all(densities, mapped(x, [](double each) { return Point{each, 0, 0}; }), out);
+  };
+  std::vector<double> places = mapped(drawn, [](const Point& point) { return point[0]; });
+  const stats::Span whole{sampler.bounds()[0], sampler.bounds()[1]};
+  return {.values = values,
+          .panels = {.equal = sampler.panels().first,
+                     .borders = stats::borders_of_peaks(std::move(places), whole)}};
+}
+
+/// The density on a domain of two coordinates, in its chart by this marginal, 0 or 1. It asks for
+/// the sampler's panels, halved as often as they cost too much. Bisection then finds jumps inside
+/// panels.
+stats::PlaneDensity plane_density(const Sampler& sampler, std::size_t marginal,
+                                  std::span<const Point> drawn, Densities densities) {
+  const DomainChart chart = chart_by(sampler.domain(), marginal);
+  Panels panels = sampler.panels();
+  while (panels.first * panels.second > most_panels) {
+    std::size_t& larger = panels.first > panels.second ? panels.first : panels.second;
+    larger = (larger + 1) / 2;
+  }
+  std::vector<std::array<double, 2>> at;
+  std::array<std::vector<double>, 2> places;
+  for (const Point& point : drawn) {
+    at.push_back(chart.coordinates(point));
+    for (std::size_t i = 0; i < 2; ++i) places[i].push_back(at.back()[i]);
+  }
+  return {.x = chart.first,
+          .y = chart.second,
+          .values = OnChart(chart, std::move(densities)),
+          .x_panels = {.equal = marginal == 0 ? panels.first : panels.second,
+                       .borders = stats::borders_of_peaks(std::move(places[0]), chart.first)},
+          .y_panels = {.equal = marginal == 0 ? panels.second : panels.first,
+                       .borders = stats::borders_of_peaks(std::move(places[1]), chart.second)},
+          .drawn = std::move(at)};
+}
+
+constexpr stats::QuadratureLimits table_limits{.tolerance = 1e-7};
+constexpr std::size_t least_parts = 32;
+
 // Cells at a jump of the density are right to 1e-6 together. A million draws tell 1e-4 of a cell,
 // so more digits would cost time for nothing.
 constexpr stats::QuadratureLimits limits{.tolerance = 1e-8};
@@ -196,47 +320,6 @@ void append(stats::CellProbabilities& all, const stats::CellProbabilities& more)
 }
 
 }  // namespace
-
-Coordinate DomainChart::coordinate(double value) const {
-  if (!has_directions(domain)) return {.value = value};
-  return {.value = value, .cosine = std::cos(value), .sine = std::sin(value)};
-}
-
-Point DomainChart::point(const Coordinate& a, const Coordinate& b) const {
-  if (has_directions(domain)) {
-    const Coordinate& theta = turned ? b : a;
-    const Coordinate& phi = turned ? a : b;
-    return {theta.sine * phi.cosine, theta.sine * phi.sine, theta.cosine};
-  }
-  const double other = domain == Domain::triangle ? b.value * (1 - a.value) : b.value;
-  return turned ? Point{other, a.value, 0} : Point{a.value, other, 0};
-}
-
-double DomainChart::jacobian(const Coordinate& a, const Coordinate& b) const {
-  if (has_directions(domain)) return turned ? b.sine : a.sine;
-  return domain == Domain::triangle ? 1 - a.value : 1;
-}
-
-std::array<double, 2> DomainChart::coordinates(const Point& p) const {
-  static const std::vector<Marginal> angles = marginals(Domain::sphere);
-  const bool directions = has_directions(domain);
-  std::array<double, 2> both{directions ? angles[0].coordinate(p) : p[0],
-                             directions ? angles[1].coordinate(p) : p[1]};
-  if (turned) std::swap(both[0], both[1]);
-  if (domain == Domain::triangle) both[1] = share_of_rest(both[1], both[0]);
-  return both;
-}
-
-DomainChart chart_by(Domain domain, std::size_t marginal) {
-  if (domain == Domain::interval) throw std::logic_error("an interval has one coordinate");
-  DomainChart chart{.domain = domain, .turned = marginal == 1, .first = {0, 1}, .second = {0, 1}};
-  if (has_directions(domain)) {
-    chart.first = {0, domain == Domain::hemisphere ? pi / 2 : pi};
-    chart.second = {0, 2 * pi};
-  }
-  if (chart.turned) std::swap(chart.first, chart.second);
-  return chart;
-}
 
 stats::PlaneGrid shifted_grid(const Sampler& sampler, StreamKey key) {
   Stream random(key, 0);
@@ -361,25 +444,6 @@ void write_all(const Densities& densities, std::span<const Point> points, std::s
   }
 }
 
-Densities densities_of(const NamedSampler& named) {
-  return checked(named, [&named](std::span<const Point> points, std::span<double> out) {
-    return named.sampler->densities(points, out);
-  });
-}
-
-stats::LineDensity line_density(const Sampler& sampler, std::span<const Point> drawn,
-                                Densities densities) {
-  const auto values = [densities = std::move(densities)](std::span<const double> x,
-                                                         std::span<double> out) {
-    write_all(densities, mapped(x, [](double each) { return Point{each, 0, 0}; }), out);
-  };
-  std::vector<double> places = mapped(drawn, [](const Point& point) { return point[0]; });
-  const stats::Span whole{sampler.bounds()[0], sampler.bounds()[1]};
-  return {.values = values,
-          .panels = {.equal = sampler.panels().first,
-                     .borders = stats::borders_of_peaks(std::move(places), whole)}};
-}
-
 bool is_impossible(const Sampler& sampler, const Point& point, double density) {
   if (density != 0) return false;
   constexpr double least_reach = 1e-6;
@@ -405,28 +469,26 @@ bool is_impossible(const Sampler& sampler, const Point& point, double density) {
   return true;
 }
 
-stats::PlaneDensity plane_density(const Sampler& sampler, std::size_t marginal,
-                                  std::span<const Point> drawn, Densities densities) {
-  const DomainChart chart = chart_by(sampler.domain(), marginal);
-  Panels panels = sampler.panels();
-  while (panels.first * panels.second > most_panels) {
-    std::size_t& larger = panels.first > panels.second ? panels.first : panels.second;
-    larger = (larger + 1) / 2;
+stats::TabulatedLaw law_of(const NamedSampler& named, std::size_t marginal,
+                           std::span<const Point> drawn) {
+  const Sampler& sampler = *named.sampler;
+  stats::AdaptiveQuadrature rule(table_limits);
+  const Densities densities =
+      checked(named, [&named](std::span<const Point> points, std::span<double> out) {
+        return named.sampler->densities(points, out);
+      });
+  if (sampler.domain() == Domain::interval) {
+    stats::LineDensity density = line_density(sampler, drawn, densities);
+    density.panels.equal = std::max(density.panels.equal, least_parts);
+    const stats::Span range{sampler.bounds()[0], sampler.bounds()[1]};
+    return stats::tabulate(rule.of(density.values), stats::cut(range, range, density.panels), rule);
   }
-  std::vector<std::array<double, 2>> at;
-  std::array<std::vector<double>, 2> places;
-  for (const Point& point : drawn) {
-    at.push_back(chart.coordinates(point));
-    for (std::size_t i = 0; i < 2; ++i) places[i].push_back(at.back()[i]);
-  }
-  return {.x = chart.first,
-          .y = chart.second,
-          .values = OnChart(chart, std::move(densities)),
-          .x_panels = {.equal = marginal == 0 ? panels.first : panels.second,
-                       .borders = stats::borders_of_peaks(std::move(places[0]), chart.first)},
-          .y_panels = {.equal = marginal == 0 ? panels.second : panels.first,
-                       .borders = stats::borders_of_peaks(std::move(places[1]), chart.second)},
-          .drawn = std::move(at)};
+  const stats::PlaneDensity density = plane_density(sampler, marginal, drawn, densities);
+  // A multiple of the panels keeps their borders.
+  stats::Panelling panels = density.x_panels;
+  panels.equal *= (least_parts + panels.equal - 1) / panels.equal;
+  const auto parts = stats::cut(density.x, density.x, panels);
+  return stats::tabulate(stats::marginal_density(density, rule), parts, rule);
 }
 
 double DensityCells::tolerance() const {

@@ -1,74 +1,23 @@
 #pragma once
 
-// Maps a sampler's domain to a rectangle, so that cells and marginals of all domains are those of a
-// rectangle.
+// Cells of a sampler's domain, and what its density says of them.
 
 #include <array>
-#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
-#include <limits>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "estimators/estimator.h"
 #include "estimators/sampler.h"
+#include "stats/basics/adaptive_quadrature.h"
 #include "stats/cells/adaptive_cells.h"
 
 namespace assay::harness {
 
-/// A coordinate's value; for an angle also sine and cosine.
-struct Coordinate {
-  double value;
-  double cosine = 0;
-  double sine = 0;
-};
-
-/// Hemisphere and sphere: theta and phi, density per solid angle times sin theta. Square: u and v.
-/// Triangle: u and v / (1 - u), times 1 - u; by its second marginal v and u / (1 - v).
-struct DomainChart {
-  Domain domain;
-  bool turned;  ///< True if its first coordinate is the second marginal.
-  stats::Span first;
-  stats::Span second;
-
-  Coordinate coordinate(double value) const;
-  Point point(const Coordinate& a, const Coordinate& b) const;
-  double jacobian(const Coordinate& a, const Coordinate& b) const;
-  std::array<double, 2> coordinates(const Point& p) const;
-};
-
-/// A cache of coordinates: quadrature meets the same values in every row of cells, and sine and
-/// cosine cost more than most densities. Each slot remembers the latest value.
-class RememberedCoordinates {
- public:
-  explicit RememberedCoordinates(const DomainChart& chart) : chart_(chart) {}
-
-  const Coordinate& operator()(double value) {
-    Coordinate& known = table_[place_of(value)];
-    if (known.value != value) known = chart_.coordinate(value);
-    return known;
-  }
-
- private:
-  static constexpr int bits = 12;
-
-  static std::size_t place_of(double value) {
-    // Knuth's multiplicative hashing by the golden ratio.
-    return (std::bit_cast<std::uint64_t>(value) * 0x9E3779B97F4A7C15) >> (64 - bits);
-  }
-
-  DomainChart chart_;
-  std::vector<Coordinate> table_ = std::vector<Coordinate>(
-      std::size_t{1} << bits, {.value = std::numeric_limits<double>::quiet_NaN()});
-};
-
-/// The chart whose first coordinate is this marginal, 0 or 1. Not for intervals.
-DomainChart chart_by(Domain domain, std::size_t marginal);
-
-/// Cells in the chart by the first marginal: 16 x 32, of an interval 64. An interval with fewer
+/// Cells in the chart of the domain: 16 x 32, of an interval 64. An interval with fewer
 /// doubles has a cell for each. Each border lies beside that of equal measure (solid angle, area)
 /// at random, by one cell at most. Borders beyond an end come back as far inside. A defect that
 /// repeats itself from cell to cell, such as a coarse rounding, would leave equal cells alone.
@@ -133,23 +82,10 @@ using Densities = std::function<std::size_t(std::span<const Point>, std::span<do
 
 void write_all(const Densities& densities, std::span<const Point> points, std::span<double> out);
 
-/// The density of all lobes together. Keeps a reference to the sampler's name.
-Densities densities_of(const NamedSampler& named);
-
-/// Points that a sampler draws show the quadrature where its density has peaks.
-stats::LineDensity line_density(const Sampler& sampler, std::span<const Point> drawn,
-                                Densities densities);
-
 /// True if the density is 0 at this point and around it, as no draw has it. Around is within 1e-6
 /// of the domain's size, or the sampler's rounding() if that is more. Rounding may move a point so
 /// far across an edge.
 bool is_impossible(const Sampler& sampler, const Point& point, double density);
-
-/// The density on a domain of two coordinates, in its chart by this marginal, 0 or 1. It asks for
-/// the sampler's panels, halved as often as they cost too much. Bisection then finds jumps inside
-/// panels.
-stats::PlaneDensity plane_density(const Sampler& sampler, std::size_t marginal,
-                                  std::span<const Point> drawn, Densities densities);
 
 /// Cells of a sampler's domain with the probability that the declared density gives each. Cells of
 /// nearly equal measure, with borders from the suite's seed (shifted_grid), are halved until none
@@ -179,6 +115,10 @@ struct DensityCells {
   /// Probability of the draws that no marginal's density is about.
   double without_density() const { return missing() + point_masses; }
 };
+
+/// The law of marginal 0 or 1 by the density of all lobes together. `drawn` as for density_cells().
+stats::TabulatedLaw law_of(const NamedSampler& named, std::size_t marginal,
+                           std::span<const Point> drawn);
 
 /// Computes them by quadrature, with the borders of this key. `drawn` are points of the sampler.
 /// Throws std::domain_error if the density is negative or not finite.

@@ -13,29 +13,7 @@
 namespace assay::harness {
 namespace {
 
-constexpr stats::QuadratureLimits table_limits{.tolerance = 1e-7};
-constexpr std::size_t least_parts = 32;
 constexpr std::uint64_t most_fetched = 4096;
-
-bool on_interval(const Sampler& sampler) { return sampler.domain() == Domain::interval; }
-
-stats::TabulatedLaw law_of(const NamedSampler& named, std::size_t marginal,
-                           std::span<const Point> drawn) {
-  const Sampler& sampler = *named.sampler;
-  stats::AdaptiveQuadrature rule(table_limits);
-  if (on_interval(sampler)) {
-    stats::LineDensity density = line_density(sampler, drawn, densities_of(named));
-    density.panels.equal = std::max(density.panels.equal, least_parts);
-    const stats::Span range{sampler.bounds()[0], sampler.bounds()[1]};
-    return stats::tabulate(rule.of(density.values), stats::cut(range, range, density.panels), rule);
-  }
-  const stats::PlaneDensity density = plane_density(sampler, marginal, drawn, densities_of(named));
-  // A multiple of the panels keeps their borders.
-  stats::Panelling panels = density.x_panels;
-  panels.equal *= (least_parts + panels.equal - 1) / panels.equal;
-  const auto parts = stats::cut(density.x, density.x, panels);
-  return stats::tabulate(stats::marginal_density(density, rule), parts, rule);
-}
 
 /// Its observations are what `write` makes of a sampler's draws.
 class DrawsEstimator final : public Estimator {
@@ -163,7 +141,8 @@ double no_point(const Marginal& marginal) { return marginal.low - 1; }
 SamplerSetup::SamplerSetup(NamedSampler named, const Location& where, StreamKey key)
     : named_(std::move(named)), key_(key) {
   const auto [low, high] = sampler().bounds();
-  if (on_interval(sampler()) && !(std::isfinite(low) && std::isfinite(high) && low < high)) {
+  if (sampler().domain() == Domain::interval &&
+      !(std::isfinite(low) && std::isfinite(high) && low < high)) {
     refuse(where, "sampler `{}` draws on [{}, {}]: no interval to divide into cells", name(), low,
            high);
   }

@@ -17,7 +17,6 @@
 #include "estimators/sampler.h"
 #include "estimators/stream.h"
 #include "harness/draws/draw_cells.h"
-#include "stats/basics/adaptive_quadrature.h"
 
 namespace assay::harness {
 
