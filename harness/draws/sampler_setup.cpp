@@ -15,6 +15,86 @@ namespace {
 
 constexpr std::uint64_t most_fetched = 4096;
 
+/// True if the density at its point is about the draw.
+bool has_density(const Sampler& sampler, const SamplerDraw& draw) {
+  return draw.valid && sampler.point_mass(draw.lobe) == 0;
+}
+
+/// A draw, and what its sampler says of its point when it is asked.
+struct AskedDraw {
+  SamplerDraw draw;
+  std::optional<double> density = {};  ///< None if no density is about the draw.
+  double evaluation = 0;
+};
+
+enum class PointNumbers { none, densities, densities_and_evaluations };
+
+/// Draws of announced observations, fetched many at a time: a sampler in another program takes
+/// longer to be asked than to answer.
+class AskedDraws {
+ public:
+  AskedDraws(const NamedSampler& named, PointNumbers asked) : named_(named), asked_(asked) {}
+
+  void announce(const Announcement& next) { announced_ = next; }
+
+  /// The draw of an observation. Throws if a density is asked for and there is none, or the draw is
+  /// unsound. If several cannot be fetched, each is fetched alone, and the one at fault throws.
+  const AskedDraw& of(const Stream& random) {
+    const std::uint64_t index = random.observation();
+    if (random.key() != key_ || index < first_ || index - first_ >= fetched_.size()) {
+      fetched_.clear();
+      std::vector<Stream> streams;
+      const std::uint64_t end = announced_.end_from(random.key(), index);
+      for (std::uint64_t i = index; i < std::min(end, index + most_fetched); ++i) {
+        streams.emplace_back(random.key(), i);
+      }
+      try {
+        fetched_ = fetched(streams);
+      } catch (const std::exception&) {
+        if (streams.size() == 1) throw;
+        announced_ = {};
+        fetched_ = fetched(std::span(streams).first(1));
+      }
+      key_ = random.key();
+      first_ = index;
+    }
+    return fetched_[index - first_];
+  }
+
+ private:
+  std::vector<AskedDraw> fetched(std::span<const Stream> streams) const {
+    const Sampler& sampler = *named_.sampler;
+    std::vector<AskedDraw> all;
+    for (const SamplerDraw& draw : draws_of(sampler, streams)) all.push_back({draw});
+    if (asked_ == PointNumbers::none) return all;
+    std::vector<std::size_t> places;
+    std::vector<Point> points;
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      sound(named_, all[i].draw);
+      if (!has_density(sampler, all[i].draw)) continue;
+      places.push_back(i);
+      points.push_back(all[i].draw.point);
+    }
+    std::vector<double> numbers(points.size());
+    const auto ask = [&](const Densities& of_points, auto number) {
+      write_all(of_points, points, numbers);
+      for (std::size_t i = 0; i < numbers.size(); ++i) all[places[i]].*number = numbers[i];
+    };
+    ask([&](auto some, auto out) { return sampler.densities(some, out); }, &AskedDraw::density);
+    if (asked_ == PointNumbers::densities) return all;
+    ask([&](auto some, auto out) { return sampler.evaluations(some, out); },
+        &AskedDraw::evaluation);
+    return all;
+  }
+
+  const NamedSampler& named_;
+  PointNumbers asked_;
+  Announcement announced_{};
+  StreamKey key_{};
+  std::uint64_t first_ = 0;
+  std::vector<AskedDraw> fetched_;
+};
+
 /// Its observations are what `write` makes of a sampler's draws.
 class DrawsEstimator final : public Estimator {
  public:
@@ -84,56 +164,6 @@ std::vector<SamplerDraw> draws_of(const Sampler& sampler, std::span<const Stream
   std::vector<SamplerDraw> draws(streams.size());
   draws.resize(sampler.samples(streams, draws));
   return draws;
-}
-
-bool has_density(const Sampler& sampler, const SamplerDraw& draw) {
-  return draw.valid && sampler.point_mass(draw.lobe) == 0;
-}
-
-const AskedDraw& AskedDraws::of(const Stream& random) {
-  const std::uint64_t index = random.observation();
-  if (random.key() != key_ || index < first_ || index - first_ >= fetched_.size()) {
-    fetched_.clear();
-    std::vector<Stream> streams;
-    const std::uint64_t end = announced_.end_from(random.key(), index);
-    for (std::uint64_t i = index; i < std::min(end, index + most_fetched); ++i) {
-      streams.emplace_back(random.key(), i);
-    }
-    try {
-      fetched_ = fetched(streams);
-    } catch (const std::exception&) {
-      if (streams.size() == 1) throw;
-      announced_ = {};
-      fetched_ = fetched(std::span(streams).first(1));
-    }
-    key_ = random.key();
-    first_ = index;
-  }
-  return fetched_[index - first_];
-}
-
-std::vector<AskedDraw> AskedDraws::fetched(std::span<const Stream> streams) const {
-  const Sampler& sampler = *named_.sampler;
-  std::vector<AskedDraw> all;
-  for (const SamplerDraw& draw : draws_of(sampler, streams)) all.push_back({draw});
-  if (asked_ == PointNumbers::none) return all;
-  std::vector<std::size_t> places;
-  std::vector<Point> points;
-  for (std::size_t i = 0; i < all.size(); ++i) {
-    sound(named_, all[i].draw);
-    if (!has_density(sampler, all[i].draw)) continue;
-    places.push_back(i);
-    points.push_back(all[i].draw.point);
-  }
-  std::vector<double> numbers(points.size());
-  const auto ask = [&](const Densities& of_points, auto number) {
-    write_all(of_points, points, numbers);
-    for (std::size_t i = 0; i < numbers.size(); ++i) all[places[i]].*number = numbers[i];
-  };
-  ask([&](auto some, auto out) { return sampler.densities(some, out); }, &AskedDraw::density);
-  if (asked_ == PointNumbers::densities) return all;
-  ask([&](auto some, auto out) { return sampler.evaluations(some, out); }, &AskedDraw::evaluation);
-  return all;
 }
 
 double no_point(const Marginal& marginal) { return marginal.low - 1; }

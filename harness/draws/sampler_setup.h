@@ -40,41 +40,6 @@ class NoDensity : public std::runtime_error {
 /// Draws of the first few streams.
 std::vector<SamplerDraw> draws_of(const Sampler& sampler, std::span<const Stream> streams);
 
-/// True if the density at its point is about the draw.
-bool has_density(const Sampler& sampler, const SamplerDraw& draw);
-
-/// A draw, and what its sampler says of its point when it is asked.
-struct AskedDraw {
-  SamplerDraw draw;
-  std::optional<double> density = {};  ///< None if no density is about the draw.
-  double evaluation = 0;
-};
-
-enum class PointNumbers { none, densities, densities_and_evaluations };
-
-/// Draws of announced observations, fetched many at a time: a sampler in another program takes
-/// longer to be asked than to answer.
-class AskedDraws {
- public:
-  AskedDraws(const NamedSampler& named, PointNumbers asked) : named_(named), asked_(asked) {}
-
-  void announce(const Announcement& next) { announced_ = next; }
-
-  /// The draw of an observation. Throws if a density is asked for and there is none, or the draw is
-  /// unsound. If several cannot be fetched, each is fetched alone, and the one at fault throws.
-  const AskedDraw& of(const Stream& random);
-
- private:
-  std::vector<AskedDraw> fetched(std::span<const Stream> streams) const;
-
-  const NamedSampler& named_;
-  PointNumbers asked_;
-  Announcement announced_{};
-  StreamKey key_{};
-  std::uint64_t first_ = 0;
-  std::vector<AskedDraw> fetched_;
-};
-
 class SamplerSetup : public Setup {
  public:
   /// The key is that of the cells' borders and of the draws that show peaks of the density.
