@@ -2,10 +2,7 @@
 
 // Evidence of one run on a claim, in a form that pools over runs, and of all nights of a series.
 //
-// A claim about a number gives an estimate of theta at the last look taken. Its standard error
-// (theta.h) and the observations that it rests on come with it. A family that tells no error gives
-// half its interval of one standard deviation. Claims about distances, of laws and of images, give
-// the p-value over the looks taken.
+// A claim about a number gives an estimate of theta at the last look taken, others a p-value.
 //
 // A run that stopped early gives the estimate it has. That is not normal then, since a small one
 // stops sooner. But observations times estimate is a random walk, wherever it is stopped. The

@@ -50,16 +50,8 @@ void add_names(const NamedSetups& setups, Identity& identity) {
   for (const auto& [name, setup] : setups) identity.emplace_back("`" + name + "`", "prepared");
 }
 
-struct NamedRecipe {
-  std::uint64_t pool = 0;
-  std::string setup = "";
-  Recipe recipe = {};
-};
-
-template <class Archive, maybe_const<NamedRecipe> T>
-void parts(Archive& a, T& named) {
-  a(named.pool, named.setup, named.recipe);
-}
+/// The names of pools' set-ups and their recipes, by the pools' places in a round.
+using Recipes = std::map<std::size_t, std::pair<std::string, Recipe>>;
 
 /// A rank's answers to rank 0.
 class Servant {
@@ -104,13 +96,13 @@ class Servant {
   void draw(Unpacker& unpack) {
     std::uint64_t number = 0;
     std::uint64_t round = 0;
-    std::vector<NamedRecipe> recipes;
+    Recipes recipes;
     std::vector<Task> orders;
     unpack(number, round, recipes, orders);
     unpack.end();
     const Clock::time_point start = Clock::now();
     if (!round_ || round_->number != round) round_ = std::make_unique<DrawnRound>(round);
-    for (const NamedRecipe& each : recipes) add(each);
+    for (const auto& [pool, named] : recipes) add(pool, named.first, named.second);
     const std::vector<Pool::Block> blocks = drawn(orders);
     // Programs may have stopped for the same signal.
     if (interrupted()) return;
@@ -118,17 +110,16 @@ class Servant {
   }
 
   /// Rank 0 has seen that its set-ups are those of this rank.
-  void add(const NamedRecipe& named) {
-    const auto setup =
-        std::ranges::find(prepared_.setups, named.setup, &NamedSetups::value_type::first);
+  void add(std::size_t pool, const std::string& name, const Recipe& recipe) {
+    const auto setup = std::ranges::find(prepared_.setups, name, &NamedSetups::value_type::first);
     // Estimators count in cells that are there when they are made (run/looks.cpp).
     const auto* const draws = dynamic_cast<const SamplerSetup*>(setup->second.get());
     const bool counts =
-        std::ranges::any_of(named.recipe.plan, [](const auto& each) { return each.cells > 0; });
+        std::ranges::any_of(recipe.plan, [](const auto& each) { return each.cells > 0; });
     if (draws != nullptr && counts) draws->cell_numbers();
     SomePools& pools = round_->pools;
-    pools.resize(std::max<std::size_t>(pools.size(), named.pool + 1));
-    pools[named.pool] = std::make_shared<Pool>(setup->second, named.recipe);
+    pools.resize(std::max(pools.size(), pool + 1));
+    pools[pool] = std::make_shared<Pool>(setup->second, recipe);
   }
 
   std::vector<Pool::Block> drawn(const std::vector<Task>& orders) {
@@ -420,14 +411,14 @@ void Ranks::give(Window& window) {
       if (to.threads == 0 || to.batches >= room) continue;
       std::vector<std::uint64_t> slots = window.some_for(rank, to.threads, workers);
       if (slots.empty()) return;
-      std::vector<NamedRecipe> recipes;
+      Recipes recipes;
       std::vector<Task> orders;
       for (const std::uint64_t number : slots) {
         const Window::Slot& slot = window.at(number);
         const Pool& pool = window.pool(slot);
         orders.push_back(slot.task);
         if (!to.recipes.insert(slot.task.pool).second) continue;
-        recipes.push_back({slot.task.pool, names_.at(pool.setup()), pool.recipe()});
+        recipes[slot.task.pool] = {names_.at(pool.setup()), pool.recipe()};
       }
       messages_.send(rank, packed(Kind::batch, next_batch_, round_, recipes, orders));
       batches_[next_batch_++] = {rank, round_, std::move(slots), Clock::now()};

@@ -71,7 +71,7 @@ reports::Sample sample_of(const TestOutcome& outcome, std::size_t subject, const
           .plugin = estimator.entry->information.name,
           .parameters = estimator.parameters,
           .channel = channel,
-          .stream = stream_text(drawn.pool().key()),
+          .stream = fmt::format("{:016x}", drawn.pool().key().bits),
           .primaries = outcome.plan.primaries[subject],
           .secondaries = drawn.summary().count,
           .cost = cost_of(drawn.summary())};

@@ -100,8 +100,7 @@ Images Drawn::images(std::uint64_t most) const {
 }
 
 std::uint64_t primaries_of_observation(const Setup& setup, std::uint64_t primaries) {
-  const std::optional<ImageShape> image = setup.image();
-  return image ? primaries * image->elements() : primaries;
+  return primaries * std::max<std::size_t>(elements_of(setup), 1);
 }
 
 std::uint64_t block_size_of(std::uint64_t primaries) {

@@ -7,7 +7,6 @@
 #include <filesystem>
 #include <ranges>
 #include <set>
-#include <stdexcept>
 #include <tuple>
 
 #include "estimators/catalogue.h"
@@ -275,17 +274,6 @@ StreamKey key_of(const PreparedEstimator& estimator, std::uint64_t seed, std::ui
   const std::string plugin =
       purpose.empty() ? estimator.key_plugin : estimator.key_plugin + "#" + purpose;
   return stream_key(seed, plugin, estimator.key_parameters, copy);
-}
-
-std::string stream_text(StreamKey key) { return fmt::format("{:016x}", key.bits); }
-
-std::unique_ptr<Estimator> RecordedRun::make() const {
-  throw std::logic_error("a recorded run has moments, not observations");
-}
-
-bool RecordedRun::knows_cost(CostKind kind) const {
-  if (kind == CostKind::seconds) return false;
-  return known_costs[kind == CostKind::rays ? rays_cost : samples_cost];
 }
 
 const RecordedRun* as_recorded_run(const Setup& setup) {

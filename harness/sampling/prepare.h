@@ -6,6 +6,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <stdexcept>
 #include <string>
 
 #include "estimators/estimator.h"
@@ -45,9 +46,6 @@ void share_random_numbers(const Suite& suite, Estimators& prepared);
 StreamKey key_of(const PreparedEstimator& estimator, std::uint64_t seed, std::uint32_t copy,
                  const std::string& purpose);
 
-/// A key in the record: 16 hexadecimal digits.
-std::string stream_text(StreamKey key);
-
 // ---- A saved record in place of an estimator: a claim reads its moments, and nothing is drawn.
 
 /// One estimator of a record (`recorded` with `run` and `estimator`): the moments of its
@@ -65,12 +63,17 @@ class RecordedRun final : public Setup {
 
   std::size_t channel_count() const override { return names.size(); }
   Channel channel(std::size_t place) const override { return {.name = names[place]}; }
-  std::unique_ptr<Estimator> make() const override;
+  std::unique_ptr<Estimator> make() const override {
+    throw std::logic_error("a recorded run has moments, not observations");
+  }
   std::optional<std::uint64_t> observations() const override { return summary.count; }
   std::optional<Nature> nature() const override { return Nature{.averages = averages}; }
   std::string data_file() const override { return file; }
   std::optional<StreamKey> data_stream() const override { return stream; }
-  bool knows_cost(CostKind kind) const;
+  bool knows_cost(CostKind kind) const {
+    return kind != CostKind::seconds &&
+           known_costs[kind == CostKind::rays ? rays_cost : samples_cost];
+  }
 };
 
 const RecordedRun* as_recorded_run(const Setup& setup);
