@@ -2,7 +2,6 @@
 
 // Cells of a sampler's domain, and what its density says of them.
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <functional>

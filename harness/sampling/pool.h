@@ -97,8 +97,8 @@ class Pool {
   std::size_t channels() const { return channels_; }
   /// The first channels, of an image; 0 without one.
   std::size_t elements() const { return elements_; }
-  /// What to keep of each channel beyond moments, to be changed before anything is drawn. An
-  /// image's millions of channels need no plans: the list may be emptied.
+  /// The plan of each channel, to be changed before anything is drawn. An image's millions of
+  /// channels need none: the list may be emptied.
   std::vector<ChannelPlan>& plans();
 
   /// Sums the variances of these channels in groups. Call it before anything is drawn.
