@@ -32,8 +32,7 @@ double no_point(const Marginal& marginal);
 inline constexpr double no_cell = -1;
 
 /// The density is out of reach: the program that computes it has ended.
-class NoDensity : public std::runtime_error {
- public:
+struct NoDensity : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 

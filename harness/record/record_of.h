@@ -156,8 +156,6 @@ reports::EstimatorChannel image_channel(const Setup& setup, const Summary& summa
 /// the files in the record. Throws std::runtime_error if one cannot be written.
 void write_maps(reports::Record& record, const std::string& json_path);
 
-// Records laws: empirical distribution functions, and the cells of two coordinates as maps.
-
 /// Adds observed and expected counts of each cell and (observed - expected) / sqrt(expected). A
 /// sampler is compared with its density, summed over all lobes. Two samples are compared by
 /// chi-square-two-sample: the expected count is the first one's part of both together. Its

@@ -8,10 +8,6 @@
 namespace assay::harness {
 namespace {
 
-std::uint64_t work(const Pool& pool, std::uint64_t observations) {
-  return observations * pool.primaries();
-}
-
 /// Blocks in flight. Each has sums of every channel, so large images get only one for each worker.
 std::size_t under_way(const SomePools& pools, unsigned workers) {
   constexpr std::size_t many_channels = std::size_t{1} << 16;
@@ -64,7 +60,7 @@ Round::Round(const SomePools& pools, Progress& progress, const std::string& phas
     const Pool& pool = *pools[i];
     in_trouble_[i] = pool.fault().has_value();
     begun_.push_back(pool.drawn());
-    total += work(pool, std::max(pool.requested(), pool.drawn()) - pool.drawn());
+    total += (std::max(pool.requested(), pool.drawn()) - pool.drawn()) * pool.primaries();
   }
   next_ = begun_;
   progress.begin({.name = phase, .total = total});
@@ -109,7 +105,7 @@ double Round::share_of(std::size_t pool) const {
 
 void Round::fold(const Task& task, Pool::Block&& block) {
   Pool& pool = *pools_[task.pool];
-  done_ += work(pool, block.whole.count);
+  done_ += block.whole.count * pool.primaries();
   pool.fold(std::move(block));
   // Handing out is concurrent and cannot ask the pool itself.
   if (pool.fault()) in_trouble_[task.pool] = true;

@@ -21,8 +21,7 @@
 namespace assay::harness {
 
 /// The data are not what this program packs; says why.
-class Unpackable : public std::runtime_error {
- public:
+struct Unpackable : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 

@@ -26,7 +26,6 @@ constexpr std::uint64_t primaries_per_block = 16384;
 constexpr std::uint64_t least_block = 8;
 static_assert(least_block % stats::variance_group == 0);  // No group spans two blocks.
 constexpr std::uint64_t most_block = 4096;
-constexpr std::uint64_t most_observations = std::numeric_limits<std::uint64_t>::max();
 
 /// Places [first, last) of a list, as far as they are there.
 template <class T>
@@ -153,8 +152,8 @@ double Pool::seconds() const {
 }
 
 std::uint64_t Pool::block_end(std::uint64_t first) const {
-  return std::min(
-      {first + block_size_, most_marked(), setup_->observations().value_or(most_observations)});
+  const std::uint64_t most = most_marked();
+  return std::min({first + block_size_, most, setup_->observations().value_or(most)});
 }
 
 /// Reads a picture to where it is kept. Its average follows it.
@@ -296,8 +295,8 @@ Recipe Pool::recipe() const {
 }
 
 bool Pool::can_be_drawn_elsewhere() const {
-  return !is_ready_made() && !known_ && !keeps_blocks_ && !setup_->observations() &&
-         !setup_->pictures() && !setup_->keeps_files();
+  return !known_ && !keeps_blocks_ && !setup_->observations() && !setup_->pictures() &&
+         !setup_->keeps_files();
 }
 
 Pool::Block Pool::drawn_sums() const {
