@@ -35,6 +35,7 @@ inline std::optional<Difference> difference(const Identity& ours, const Identity
     const auto found = std::ranges::find(identity, name, &Identity::value_type::first);
     return found == identity.end() ? "none" : found->second;
   };
+  if (ours == theirs) return std::nullopt;
   for (const Identity& identity : {ours, theirs}) {
     for (const auto& [name, unused] : identity) {
       Difference found{name, value(ours, name), value(theirs, name)};
