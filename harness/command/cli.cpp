@@ -149,19 +149,6 @@ constexpr Running of_suites{
 // The commands.
 
 void define_run(Options& options, RunCommand& command) {
-  options.about(R"(Tests the claims of suite files.
-
-Examples:
-  assay run suites/luminaire.yaml
-  assay run suites/*.yaml --filter '*/variance*' --threads 4
-  assay run suites/*.yaml --tag bias --filter '-*slope*'    without slopes
-  assay run suites/luminaire.yaml --report json=run.json html=run.html
-  assay run suites/luminaire.yaml --set triangle_area.scene=rectangle --seed 7
-  assay run suites/luminaire.yaml --coarsen 4    faster and coarser
-  assay run suites/luminaire.yaml --seed random --ledger nightly.ledger
-  assay run suites/luminaire.yaml --checkpoint run.ckpt    survives a kill
-  assay run suites/luminaire.yaml --shard 2/4 --report json=2.json
-)");
   add_suites(options, command);
   options.add(
       {"--shard", "I/N", Replay::no}, command.options.shard, read_shard,
@@ -182,15 +169,6 @@ Examples:
 }
 
 void define_plan(Options& options, PlanCommand& command) {
-  options.about(
-      R"(Prints what a run of suites would do: the method, sample sizes, expected cost
-and detectable effect of each test. It draws only the pilots.
-
-Examples:
-  assay plan suites/luminaire.yaml
-  assay plan suites/*.yaml --filter '*/variance*' --coarsen 4
-  assay plan suites/cycles.yaml --list-renders    for other machines
-)");
   add_suites(options, command);
   options.flag({"--list-renders", "", Replay::no},
                "print the missing renders instead of the plan, one a line: command, seed and "
@@ -200,15 +178,6 @@ Examples:
 }
 
 void define_check(Options& options, CheckCommand& command) {
-  options.about(R"(Tests one claim. Its names are plugins, or names given by --estimator.
-
-Examples:
-  assay check 'mean(luminaire/area) == analytic' --detect 0.5%
-  assay check 'mean(luminaire/area) == 0.481046907316 +- 1e-12'
-  assay check 'variance(a) < variance(h)' --estimator a=luminaire/area \
-      --estimator 'h=luminaire/hemisphere,scene=rectangle'
-  assay check 'mean(a) == 0.5' --estimator a=recorded,file=numbers.txt
-)");
   CheckArguments& given = command.arguments;
   options.add({.name = "CLAIM", .needed = "a claim"}, given.claim, read_claim,
               "the claim, in quotes");
@@ -249,29 +218,6 @@ Examples:
 }
 
 void define_images(Options& options, ImagesCommand& command) {
-  options.about(
-      R"(Compares pictures of one scene, pixel by pixel and on every larger scale. Are
-their means equal, and if not, where do they differ? Every file is one
-observation and needs a seed of its own.
-
-Files are OpenEXR, PFM or PNG. PNG is converted from sRGB to linear light. Both
-sides are rounded to the coarser format, half or PNG; PNG also clips to [0, 1].
-Crops are compared where both sides have pixels. A depth Z may be infinite. With
---channels, each layer has a claim of its own.
-
-A side that finds some light too rarely for its number of pictures is too dark,
-and fails. So does light sampling of a narrow highlight: give more pictures.
-
-Examples:
-  assay images --candidate 'new/*.exr' --reference 'old/*.exr' \
-      --report html=difference.html
-  assay images --candidate 'new/*.exr' --reference converged.exr --detect 1%
-  assay images --candidate 'new/*.exr' --reference 'old/*.exr' --channels '*'
-  assay images --candidate 'new/*.exr' --reference 'old/*.exr' \
-      --ignore nonfinite --mask mask.png
-  assay images --candidate 'half/*.exr' --reference 'float/*.exr' \
-      --within 0.5% --report json=run.json
-)");
   ImagesArguments& given = command.arguments;
   options.add({.name = "--candidate",
                .value = "GLOB",
@@ -326,12 +272,6 @@ Examples:
 }
 
 void define_sample(Options& options, SampleArguments& given) {
-  options.about(R"(Prints observations of an estimator or a sampler as text that `recorded` reads.
-
-Examples:
-  assay sample luminaire/area --secondaries 1000 > area.txt
-  assay sample a --estimator 'a=luminaire/area,scene=rectangle' --primaries 64
-)");
   options.add({.name = "SOURCE", .needed = "an estimator", .words = plugin_names()}, given.source,
               "an estimator, or a part of it");
   add_estimators(options, given.estimators);
@@ -344,19 +284,6 @@ Examples:
 }
 
 void define_calibrate(Options& options, CalibrateCommand& command) {
-  options.about(
-      R"(Measures how often methods err. On known laws it tests true claims and claims
-that are wrong by `detect`, and counts the verdicts. It does so for the whole
-procedure, with pilot, gates and looks, and for the method alone. Exit code 1:
-some cell errs too often.
-
-Examples:
-  assay calibrate t --runs 200    within a minute
-  assay calibrate                 all methods: more than an hour
-  assay calibrate F chi-square --law exponential --alpha 0.01 --runs 20000 \
-      --report html=F.html
-  assay calibrate t --law 'lognormal(0, 2)' --samples 200
-)");
   CalibrateArguments& given = command.arguments;
   Output& output = command.output;
   options.add({.name = "METHOD", .words = method_names()}, given.methods, "methods; default all");
@@ -383,14 +310,6 @@ Examples:
 }
 
 void define_list(Options& options, ListCommand& command) {
-  options.about(
-      R"(Prints plugins or tests, one a line, or a table with a sentence on each row.
-
-Examples:
-  assay list plugins
-  assay list tests suites/*.yaml
-  assay list methods
-)");
   Texts lists{"plugins", "tests"};
   for (const Table& table : tables()) lists.push_back(table.plural);
   options.add(
@@ -415,14 +334,6 @@ Examples:
 }
 
 void define_describe(Options& options, DescribeCommand& command) {
-  options.about(
-      R"(Prints the manual of a plugin: parameters, channels, samplers, mutants. It also
-describes a family of plugins, a method, a quantity, a law, a gate or a report.
-
-Examples:
-  assay describe luminaire/area
-  assay describe luminaire
-)");
   Texts words = plugin_names();
   for (const Table& table : tables())
     std::ranges::copy(mapped(table.rows, &TableRow::name), std::back_inserter(words));
@@ -447,14 +358,6 @@ void read_words(Texts words, ReplayArguments& given) {
 }
 
 void define_replay(Options& options, ReplayArguments& given) {
-  options.about(
-      R"(Draws the numbers of a recorded test again, or only one of its observations.
-Without RUN.json it takes the last run from this folder.
-
-Examples:
-  assay replay 'luminaire/mean(triangle_area) == analytic'
-  assay replay run.json 'luminaire/mean(triangle_area) == analytic' 17
-)");
   const auto words = std::make_shared<Texts>();
   options.add({.name = "TEST",
                .value = "[RUN.json] TEST [OBSERVATION]",
@@ -467,30 +370,12 @@ Examples:
 }
 
 void define_explain(Options& options, ExplainArguments& given) {
-  options.about(
-      R"(Explains a test in a few sentences, and says what to do next. Without RUN.json
-it takes the last run from this folder.
-
-Examples:
-  assay explain 'luminaire/mean(triangle_area) == analytic'
-  assay explain run.json triangle_area
-)");
   options.add(
       {.name = "TEST", .value = "[RUN.json] TEST"}, given.words,
       "a saved run, default the last one; a test's id or a part of it, if the run has several");
 }
 
 void define_merge(Options& options, MergeCommand& command) {
-  options.about(
-      R"(Joins the records of all shards into the record of the whole run, with Holm's
-adjusted p-values, and reports it. It samples nothing. The tests of a missing
-shard are skipped, and the exit code is 1.
-
-Examples:
-  assay run suites/luminaire.yaml --shard 1/2 --report json=1.json
-  assay run suites/luminaire.yaml --shard 2/2 --report json=2.json
-  assay merge 1.json 2.json --report json=run.json html=run.html
-)");
   options.add({.name = "SHARD.json", .needed = "the records of all shards", .words = {"*.json"}},
               command.records, "the records of all shards, in any order");
   add_inconclusive(options, command.output);
@@ -498,26 +383,12 @@ Examples:
 }
 
 void define_report(Options& options, ReportCommand& command) {
-  options.about(R"(Makes reports from a saved run. It samples nothing.
-
-Examples:
-  assay report run.json --report html=run.html
-  assay report run.json --report console=-
-)");
   options.add({.name = "RUN.json", .needed = "a saved run", .words = {"*.json"}}, command.file,
               "a saved run");
   add_output(options, command.output);
 }
 
 void define_init(Options& options, InitArguments& given) {
-  options.about(
-      R"(Writes a small example that runs at once, and says what to edit and how to run
-it.
-
-Examples:
-  assay init suite
-  assay init process python sky      into the folder sky
-)");
   const Texts kinds = kinds_of_example();
   options.add({.name = "KIND",
                .value = "KIND [FOLDER]",
@@ -528,15 +399,6 @@ Examples:
 }
 
 void define_completion(Options& options, TextCommand& command) {
-  options.about(
-      R"(Prints a script that completes commands, options, their values, suites and names
-in a shell.
-
-Examples:
-  assay completion fish > ~/.config/fish/completions/assay.fish
-  source <(assay completion bash)      in ~/.bashrc
-  source <(assay completion zsh)       in ~/.zshrc, after compinit
-)");
   constexpr std::string_view scripts = "completion/assay.";
   std::vector<std::pair<std::string, std::string>> shells;
   for (const CarriedFile& file : carried_files()) {
@@ -550,11 +412,6 @@ Examples:
 const std::vector<CommandRow>& command_rows();
 
 void define_man(Options& options, TextCommand& command) {
-  options.about(R"(Prints the manual page, which lists all commands and options.
-
-Examples:
-  assay man > assay.1 && man -l assay.1
-)");
   options.afterwards([&command] { command.text = man_page(texts_of(command_rows())); });
 }
 
@@ -601,9 +458,7 @@ Command parse_command_line(const std::vector<std::string>& arguments) {
   }
   if (arguments == Texts{"help", "all"}) return TextCommand{help_of_all(texts_of(command_rows()))};
   if (arguments == Texts{"help", "claims"}) {
-    const auto& files = carried_files();
-    const auto file = std::ranges::find(files, "claims.md", &CarriedFile::path);
-    return TextCommand{help_of_claims(file->text)};
+    return TextCommand{help_of_claims(carried_text("claims.md"))};
   }
   return parsed(arguments, command_rows());
 }

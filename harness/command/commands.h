@@ -73,15 +73,17 @@ int sample(const SampleArguments&);
 /// suites name. Of a file it takes the size and the first mebibyte.
 Identity identity_of(const std::vector<Suite>& suites, const RunOptions& options);
 
-/// A text that the program carries: a template of `assay init`, a script of `assay completion`, or
-/// what suites/README.md says of claims.
+/// A text that the program carries: a template of `assay init`, a script of `assay completion`, a
+/// page of help, or what suites/README.md says of claims.
 struct CarriedFile {
-  std::string_view path;  ///< below harness/command, as "init/suite/mine.yaml"; or "claims.md"
+  std::string_view path;  ///< below harness/command, as "help/run.txt"; or "claims.md"
   std::string_view text;
 };
 
 /// In the order of their paths.
 const std::vector<CarriedFile>& carried_files();
+/// The text of the file of this path.
+std::string_view carried_text(std::string_view path);
 
 struct InitArguments {
   std::vector<std::string> words;  ///< KIND [FOLDER]; a kind has one word or two

@@ -15,6 +15,7 @@
 #include "harness/base/terminal.h"
 #include "harness/base/text_file.h"
 #include "harness/base/version.h"
+#include "harness/command/commands.h"
 #include "harness/language/laws.h"
 #include "harness/theta/gate.h"
 #include "harness/theta/methods.h"
@@ -23,12 +24,6 @@
 
 namespace assay::harness {
 namespace {
-
-constexpr const char* purpose =
-    "Assay tests whether Monte Carlo estimators do what their authors claim.";
-
-constexpr std::array<const char*, 5> of_the_first_hour{"init", "check", "run", "images",
-                                                       "describe"};
 
 constexpr std::size_t list_column = 14;  // of the summaries of commands
 
@@ -341,28 +336,12 @@ Table table_of(const char* plural, const char* singular, const Rows& rows) {
 }  // namespace
 
 std::string overview(const std::vector<CommandText>& commands) {
-  std::string text = fmt::format("{}\n\n", purpose);
-  text += R"(Examples:
-  assay init suite       a file of claims that runs at once
-  assay check 'mean(luminaire/area) == analytic' --detect 0.5%
-  assay images --candidate 'new/*.exr' --reference 'old/*.exr'
-
-First commands:
-)";
-  for (const char* name : of_the_first_hour) {
-    text += entry(*std::ranges::find(commands, name, &CommandText::name));
+  std::string first;
+  for (const char* name : {"init", "check", "run", "images", "describe"}) {
+    first += entry(*std::ranges::find(commands, name, &CommandText::name));
   }
-  text += R"(
-`assay COMMAND --help` explains a command, `assay help claims` the language of
-claims and suites. `assay help all` lists all commands and exit codes.
-`assay man` prints a manual page of all commands.
-`assay completion bash|zsh|fish` prints a script that completes commands.
-
-Options:
-  -h, --help   this text
-  --version    version and commit
-)";
-  return text;
+  return boost::replace_first_copy(std::string(carried_text("help/overview.txt")), "@FIRST@",
+                                   first);
 }
 
 std::string help_of_claims(std::string_view markdown) {
@@ -431,6 +410,8 @@ std::string help_of(const CommandText& command) {
 }
 
 std::string man_page(const std::vector<CommandText>& commands) {
+  const std::string_view overview = carried_text("help/overview.txt");
+  const std::string purpose(overview.substr(0, overview.find('\n')));
   std::string text = fmt::format(
       ".TH ASSAY 1 \"\" \"assay {0}\" \"\"\n.SH NAME\nassay \\- test claims about Monte Carlo "
       "estimators\n.SH SYNOPSIS\n.B assay\n\\fICOMMAND\\fR [\\fIOPTIONS\\fR] "

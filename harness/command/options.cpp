@@ -212,7 +212,8 @@ void Options::read_values() const {
 }
 
 CommandText Options::text(const std::string& summary) const {
-  return {app_.get_name(), summary, about_, mapped(rows_, &Row::text)};
+  const std::string about(carried_text("help/" + app_.get_name() + ".txt"));
+  return {app_.get_name(), summary, about, mapped(rows_, &Row::text)};
 }
 
 std::vector<CommandText> texts_of(const std::vector<CommandRow>& commands) {

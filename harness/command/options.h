@@ -28,9 +28,6 @@ class Options {
  public:
   explicit Options(CLI::App& app) : app_(app) {}
 
-  /// The text before the options in `--help`: a sentence and examples.
-  void about(const std::string& text) { about_ = text; }
-
   /// An option or an argument, which repeats if the target is a list. `read` takes the text and the
   /// option's name. An empty text counts as none if the option does not repeat.
   template <class Target, class Read>
@@ -80,7 +77,6 @@ class Options {
                std::function<void(const std::string&)> take);
 
   CLI::App& app_;
-  std::string about_ = "";
   std::vector<Row> rows_ = {};
   std::vector<CLI::Option*> choices_ = {};
   std::string* replay_line_ = nullptr;
