@@ -4,7 +4,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <array>
 #include <boost/algorithm/string/replace.hpp>
 #include <cmath>
 #include <set>
@@ -26,19 +25,6 @@ namespace assay::harness {
 namespace {
 
 constexpr std::size_t list_column = 14;  // of the summaries of commands
-
-constexpr std::array<std::pair<const char*, const char*>, 7> exit_codes{{
-    {"0", "every test came out as expected"},
-    {"1",
-     "at least one did not: it failed, was invalid or could not be tested; or the ledger alarms"},
-    {"2", "the input is wrong, or Assay could not finish"},
-    {"3", "no test went wrong, but at least one is inconclusive"},
-    {"4",
-     "no test ran: --filter, --tag or --shard selected none (0 if the environment asked for the "
-     "shard)"},
-    {"77", "all tests were skipped"},
-    {"130", "interrupted"},
-}};
 
 std::string entry(const CommandText& command) {
   return beside("  " + command.name, command.summary, list_column);
@@ -72,12 +58,6 @@ std::string roff(const std::string& text) {
 /// Short lines, as mandoc asks for.
 std::string paragraph(const std::string& text) { return roff(wrapped(text, 0, 70)); }
 
-std::string roff_entry(const std::string& bold, const std::string& italic,
-                       const std::string& text) {
-  const std::string value = italic.empty() ? "" : fmt::format(" \\fI{}\\fR", roff(italic));
-  return fmt::format(".TP\n\\fB{}\\fR{}\n{}", roff(bold), value, paragraph(text));
-}
-
 std::string roff_section(const CommandText& command) {
   const std::size_t examples = std::min(command.about.find("\nExamples:\n"), command.about.size());
   std::string text =
@@ -89,7 +69,8 @@ std::string roff_section(const CommandText& command) {
   for (const OptionText& option : command.options) {
     std::string value = option.is_argument() ? "" : option.value;
     if (option.repeats) value += value.empty() ? "..." : " ...";
-    text += roff_entry(option.name, value, option.about);
+    if (!value.empty()) value = fmt::format(" \\fI{}\\fR", roff(value));
+    text += fmt::format(".TP\n\\fB{}\\fR{}\n{}", roff(option.name), value, paragraph(option.about));
   }
   return text;
 }
@@ -383,15 +364,9 @@ std::string help_of_claims(std::string_view markdown) {
 }
 
 std::string help_of_all(const std::vector<CommandText>& commands) {
-  std::string text = "Commands (each has its own --help, with examples and defaults):\n";
-  for (const CommandText& command : commands) text += entry(command);
-  text +=
-      beside("  help", "print the first page, or help on a command: `assay help run`", list_column);
-  text += "\nExit codes:\n";
-  for (const auto& [code, meaning] : exit_codes) {
-    text += beside(fmt::format("  {}", code), meaning, 7);
-  }
-  return text;
+  std::string all;
+  for (const CommandText& command : commands) all += entry(command);
+  return boost::replace_first_copy(std::string(carried_text("help/all.txt")), "@COMMANDS@", all);
 }
 
 std::string help_of(const CommandText& command) {
@@ -419,7 +394,9 @@ std::string man_page(const std::vector<CommandText>& commands) {
       version(), paragraph(purpose));
   for (const CommandText& command : commands) text += roff_section(command);
   text += ".SH EXIT STATUS\n";
-  for (const auto& [code, meaning] : exit_codes) text += roff_entry(code, "", meaning);
+  const std::string_view all = carried_text("help/all.txt");
+  const std::string_view codes = all.substr(all.find("  0 "));
+  text += fmt::format(".in -6n\n.nf\n{}.fi\n.in\n", roff(std::string(codes)));
   return text;
 }
 
