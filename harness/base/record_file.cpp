@@ -37,20 +37,6 @@ std::string without_blanks(std::string text) {
   return text;
 }
 
-/// The nearest id to an unknown one; "" if none is near.
-std::string meant(const std::string& asked, const std::vector<Recorded>& all) {
-  std::vector<std::string> spellings;
-  for (const Recorded& each : all) {
-    spellings.push_back(each.test.id);
-    spellings.push_back(each.test.name);
-  }
-  const std::string near = nearest(asked, spellings);
-  for (const Recorded& each : all) {
-    if (!near.empty() && (each.test.id == near || each.test.name == near)) return each.test.id;
-  }
-  return "";
-}
-
 std::string some_ids(const std::vector<Recorded>& tests) {
   constexpr std::size_t most = 5;
   const auto id = [](const Recorded& each) { return each.test.id; };
@@ -65,24 +51,26 @@ Recorded find_test(const reports::Record& record, const std::string& file,
   std::vector<Recorded> all;
   std::vector<Recorded> named;
   std::vector<Recorded> parts;
+  std::vector<Recorded> broken;  // of the parts
+  std::vector<std::string> spellings;
   const std::string asked = without_blanks(name);
-  for (const reports::Suite& suite : record.suites) {
-    for (const reports::Test& test : suite.tests) {
-      all.push_back({suite, test});
-      if (test.id == name) return all.back();
-      if (without_blanks(test.name) == asked) named.push_back(all.back());
-      if (without_blanks(test.id).find(asked) != std::string::npos) parts.push_back(all.back());
-    }
-  }
-  // Without a name it is the one that is not as it should be.
-  const auto has_alarm = [&](const reports::Test& test) {
-    return std::ranges::any_of(record.ledger.series, [&](const reports::LedgerSeries& series) {
+  const auto is_broken = [&](const reports::Test& test) {
+    return !test.ok || std::ranges::any_of(record.ledger.series, [&](const auto& series) {
       return series.alarm && series.test == test.id;
     });
   };
-  std::vector<Recorded> broken;
-  std::ranges::copy_if(parts, std::back_inserter(broken),
-                       [&](const Recorded& each) { return !each.test.ok || has_alarm(each.test); });
+  for (const reports::Suite& suite : record.suites) {
+    for (const reports::Test& test : suite.tests) {
+      const Recorded& each = all.emplace_back(Recorded{suite, test});
+      if (test.id == name) return each;
+      spellings.insert(spellings.end(), {test.id, test.name});
+      if (without_blanks(test.name) == asked) named.push_back(each);
+      if (without_blanks(test.id).find(asked) == std::string::npos) continue;
+      parts.push_back(each);
+      if (is_broken(test)) broken.push_back(each);
+    }
+  }
+  // Without a name it is the one that is not as it should be.
   if (name.empty() && !broken.empty()) parts.swap(broken);
   const std::vector<Recorded>& matching = named.empty() ? parts : named;
   const Location where{.file = file};
@@ -94,9 +82,8 @@ Recorded find_test(const reports::Record& record, const std::string& file,
            some_ids(matching));
   }
   if (all.empty()) refuse(where, "this run has no test");
-  const std::string near = meant(name, all);
-  refuse(where, "no test `{}` in this run; {}{}", name,
-         near.empty() ? "there is: " + some_ids(all) : "did you mean `" + near + "`?",
+  refuse(where, "no test `{}` in this run{}{}", name,
+         did_you_mean(name, spellings, "there is: " + some_ids(all)),
          file != the_last_run ? ""
                               : " (another run is kept by `--report json=FILE`: give FILE before "
                                 "the test)");

@@ -233,8 +233,7 @@ TEST_F(Replays, NamesTestsWhereNoneIsNear) {
   };
   EXPECT_EQ(refused("stream"), "(nothing was refused)");
   EXPECT_EQ(refused("onestream"), "(nothing was refused)");
-  EXPECT_EQ(refused("one straem"),
-            "no test `one straem` in this run; did you mean `suite/one stream`?");
+  EXPECT_EQ(refused("one straem"), "no test `one straem` in this run; did you mean `one stream`?");
   EXPECT_EQ(refused("XX"),
             "no test `XX` in this run; there is: `suite/mean`, `suite/absolute`, `suite/allowed`, "
             "`suite/means`, `suite/one stream`, …");
