@@ -33,10 +33,11 @@ namespace {
 using harness::Suite;
 using harness::TestWork;
 
-/// The budget, and the number of claims made.
+/// The budget, and the numbers of claims made.
 struct Spent {
   std::optional<ClaimBudget> budget = {};
   std::uint64_t claims = 0;
+  std::uint64_t in_test = 0;
 };
 Spent& spent() {
   static Spent state;
@@ -44,25 +45,16 @@ Spent& spent() {
 }
 
 /// Each repetition of the tests makes all claims again.
-class Repetitions : public testing::EmptyTestEventListener {
+class Counting : public testing::EmptyTestEventListener {
   void OnTestIterationStart(const testing::UnitTest&, int) override { spent().claims = 0; }
+  void OnTestStart(const testing::TestInfo&) override { spent().in_test = 0; }
+  void OnTestEnd(const testing::TestInfo&) override { spent().in_test = 0; }
 };
 
 std::string current_test() {
   const testing::TestInfo* test = testing::UnitTest::GetInstance()->current_test_info();
   if (test == nullptr) return "outside of a test";
   return std::string(test->test_suite_name()) + "." + test->name();
-}
-
-/// The number of this claim in its test, from 1.
-std::uint64_t ordinal() {
-  const testing::TestInfo* test = testing::UnitTest::GetInstance()->current_test_info();
-  std::uint64_t before = 0;
-  const testing::TestResult* result = test == nullptr ? nullptr : test->result();
-  for (int i = 0; result != nullptr && i < result->test_property_count(); ++i) {
-    before += std::string(result->GetTestProperty(i).key()).starts_with("claim_") ? 1U : 0U;
-  }
-  return before + 1;
 }
 
 Entry entry_of(bool averages) {
@@ -166,24 +158,21 @@ reports::Test tested(const std::string& claim, const Asked& asked, const ClaimBu
   return test;
 }
 
-void record(const std::string& name, std::uint64_t claim, const std::string& value) {
-  if (!value.empty()) testing::Test::RecordProperty(name + "_" + std::to_string(claim), value);
-}
-
-std::string text_of(const reports::Number& number) {
-  return number ? reports::round_trip(*number) : "";
-}
-
-void record(const reports::Test& test, std::uint64_t claim) {
+/// Writes the properties of this test's claim of that number.
+void record(const reports::Test& test, std::uint64_t number) {
   const reports::Channel channel = reports::worst_channel(test);
-  record("verdict", claim, reports::to_string(test.verdict));
-  record("method", claim, test.method);
-  record("estimate", claim, text_of(channel.effect.estimate));
-  record("low", claim, text_of(channel.effect.low));
-  record("high", claim, text_of(channel.effect.high));
-  record("log10_p", claim, text_of(channel.log10_p));
-  if (test.samples.empty()) return;
-  record("secondaries", claim, std::to_string(test.samples[0].secondaries));
+  const auto text = [](const reports::Number& x) { return x ? reports::round_trip(*x) : ""; };
+  const std::map<std::string, std::string> properties{
+      {"verdict", reports::to_string(test.verdict)},
+      {"method", test.method},
+      {"estimate", text(channel.effect.estimate)},
+      {"low", text(channel.effect.low)},
+      {"high", text(channel.effect.high)},
+      {"log10_p", text(channel.log10_p)},
+      {"secondaries", test.samples.empty() ? "" : std::to_string(test.samples[0].secondaries)}};
+  for (const auto& [name, value] : properties) {
+    if (!value.empty()) testing::Test::RecordProperty(fmt::format("{}_{}", name, number), value);
+  }
 }
 
 /// The text in lines of 80 columns, the first as GoogleTest shows it.
@@ -209,8 +198,8 @@ testing::AssertionResult judged(const std::string& claim, const std::vector<Part
                     "DeclaredClaims",
                     state.claims, state.budget->claims));
   }
-  const std::uint64_t number = ordinal();
-  record("claim", number, claim);
+  const std::uint64_t number = ++state.in_test;
+  testing::Test::RecordProperty(fmt::format("claim_{}", number), claim);
   const Asked sources = asked(parts, current_test() + "#" + std::to_string(number));
   reports::Test test = tested(claim, sources, *state.budget);
   record(test, number);
@@ -271,7 +260,7 @@ DeclaredClaims::DeclaredClaims(const ClaimBudget& budget) {
   }
   if (spent().budget) throw std::logic_error("DeclaredClaims: a binary has one budget");
   spent().budget = budget;
-  testing::UnitTest::GetInstance()->listeners().Append(new Repetitions);
+  testing::UnitTest::GetInstance()->listeners().Append(new Counting);
 }
 
 }  // namespace assay::googletest
