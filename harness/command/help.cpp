@@ -79,8 +79,20 @@ std::string roff_section(const CommandText& command) {
 
 using Offers = std::vector<std::pair<std::string, std::string>>;
 
-Offers offers_of(const CommandText& command, const std::vector<std::string>& words) {
+Offers offers_of(const std::vector<CommandText>& commands, const std::vector<std::string>& words) {
   Offers offers;
+  const bool is_help = words.size() == 2 && words.front() == "help";
+  if (words.size() == 1 || is_help) {
+    if (is_help)
+      offers = {{"all", "every command"}, {"claims", "the language of claims"}};
+    else
+      offers = {{"help", "explain a command"}, {"--help", ""}, {"--version", ""}};
+    for (const CommandText& command : commands) offers.emplace_back(command.name, command.summary);
+    return offers;
+  }
+  const auto found = std::ranges::find(commands, words.front(), &CommandText::name);
+  if (found == commands.end()) return {};
+  const CommandText& command = *found;
   const auto offer_words = [&](const OptionText& option) {
     for (const std::string& word : option.words) offers.emplace_back(word, "");
   };
@@ -117,22 +129,6 @@ Offers offers_of(const CommandText& command, const std::vector<std::string>& wor
     offers.erase(std::ranges::unique(offers).begin(), offers.end());
   }
   return offers;
-}
-
-Offers offers_of(const std::vector<CommandText>& commands, std::vector<std::string>& words) {
-  Offers offers;
-  const bool is_help = words.size() == 2 && words.front() == "help";
-  if (words.size() == 1 || is_help) {
-    for (const CommandText& command : commands) offers.emplace_back(command.name, command.summary);
-    if (is_help) {
-      offers.insert(offers.end(), {{"all", "every command"}, {"claims", "the language of claims"}});
-      return offers;
-    }
-    offers.insert(offers.end(), {{"help", "explain a command"}, {"--help", ""}, {"--version", ""}});
-    return offers;
-  }
-  const auto command = std::ranges::find(commands, words.front(), &CommandText::name);
-  return command == commands.end() ? Offers{} : offers_of(*command, words);
 }
 
 // ---- Manuals and tables
