@@ -205,6 +205,13 @@ class Parser {
     return found;
   }
 
+  std::variant<Source, Constant> reference() {
+    if (lexer_.peek().kind != Kind::number) return source();
+    const Constant found = constant(lexer_.next().number);
+    end("the reference");
+    return found;
+  }
+
   Margin margin() {
     const Token token = lexer_.next();
     if (token.kind != Kind::number) unexpected(token, "a margin, as `0.5%` or `0.002`");
@@ -308,7 +315,12 @@ class Parser {
           "a value has no per cent: write `{:g}`, or a margin, as in `mean(a) within {:g}% of 0.5`",
           number / 100, number);
     }
-    if (!take("+-")) return Constant{number, 0};
+    return constant(number);
+  }
+
+  /// A number that is read, and its standard error if that follows.
+  Constant constant(double number) {
+    if (!take("+-")) return {number, 0};
     const Location where = lexer_.peek().where;
     const double error = expect_number();
     if (error < 0) refuse(where, "a standard error cannot be negative");
@@ -316,7 +328,7 @@ class Parser {
       refuse(token.where, "a standard error is a number: write `{0} +- {1:.6g}`", number,
              std::abs(number * error / 100));
     }
-    return Constant{number, error};
+    return {number, error};
   }
 
   Law law(const Token& name) {
@@ -540,6 +552,10 @@ Claim parse_claim(std::string_view text, const Location& where) {
 
 Source parse_source(std::string_view text, const Location& where) {
   return Parser(text, where).source();
+}
+
+std::variant<Source, Constant> parse_reference(std::string_view text, const Location& where) {
+  return Parser(text, where).reference();
 }
 
 Margin parse_margin(std::string_view text, const Location& where, std::string_view what) {

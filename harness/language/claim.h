@@ -131,6 +131,8 @@ std::string to_string(const Claim&);
 
 /// Parses "estimator" or "estimator.part".
 Source parse_source(std::string_view text, const Location& where);
+/// Parses a source, or a number as "6.36" or "6.36 +- 0.01".
+std::variant<Source, Constant> parse_reference(std::string_view text, const Location& where);
 
 /// True if a claim can use the name: a letter or `_`, then letters, digits, `_`, `-`, `/`.
 bool is_estimator_name(std::string_view name);

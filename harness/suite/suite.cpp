@@ -81,24 +81,10 @@ Sweep read_sweep(const Value& value) {
   return sweep;
 }
 
-/// `reference: trusted`, `reference: 6.36` or `reference: 6.36 +- 0.01`.
 void read_reference(const Value& value, TestEntry& test) {
-  const std::string text = one_line(value, "`reference`");
-  if (text.find_first_of("0123456789") != text.find_first_not_of(" +-.")) {
-    test.reference = parse_source(text, value.where());
-    return;
-  }
-  const std::size_t error = text.find("+-");
-  const auto number = [&](const std::string& part) {
-    const std::string bare = boost::trim_copy_if(part, boost::is_any_of(" "));
-    return Value::scalar(bare, value.where()).number("a number of `reference`");
-  };
-  Constant reference{.value = number(text.substr(0, error))};
-  if (error != std::string::npos) reference.standard_error = number(text.substr(error + 2));
-  if (!std::isfinite(reference.value + reference.standard_error) || reference.standard_error < 0) {
-    refuse(value.where(), "`reference` must be finite, and its error not negative");
-  }
-  test.reference_number = reference;
+  const auto reference = parse_reference(one_line(value, "`reference`"), value.where());
+  if (const auto* source = std::get_if<Source>(&reference)) test.reference = *source;
+  if (const auto* number = std::get_if<Constant>(&reference)) test.reference_number = *number;
 }
 
 void check_margins(const TestEntry& test) {
@@ -232,45 +218,14 @@ Budget read_budget(const Document& document, const Value& value) {
   return budget;
 }
 
-/// `primaries` and the plugin's parameters.
-std::vector<std::string> settable_names(const Entry& plugin) {
-  std::vector<std::string> names{"primaries"};
-  for (const ParameterInformation& p : plugin.information.parameters) names.push_back(p.name);
-  return names;
-}
-
-/// `who` has the parameter in messages.
-void require_parameter(const std::string& who, const EstimatorEntry& estimator,
-                       const std::string& key, const Location& where) {
-  const auto names = settable_names(find_plugin(estimator.plugin, where));
+void require_parameter(const EstimatorEntry& estimator, const std::string& key,
+                       const Location& where) {
+  const Information& plugin = find_plugin(estimator.plugin, where).information;
+  std::vector<std::string> names = mapped(plugin.parameters, &ParameterInformation::name);
+  names.emplace_back("primaries");
   if (std::ranges::find(names, key) != names.end()) return;
-  refuse(where, "{} has no parameter `{}`{}", who, key, suggestion(key, names));
-}
-
-/// Reads an entry of `estimators:`. `scenes` is the suite's map `scenes:`.
-EstimatorEntry read_estimator(const Document& document, const std::string& name, const Value& value,
-                              const Value& scenes) {
-  if (name.find('{') != std::string::npos) {
-    refuse(document.key(value), "a `: ` is missing before the `{{` of `{}`", name);
-  }
-  require_estimator_name(name, document.key(value));
-  const Value* plugin = value.find("plugin");
-  if (!plugin) {
-    refuse(value.where(), "`{0}` needs the key `plugin`, as in `{0}: {{plugin: luminaire/area}}`",
-           name);
-  }
-  const Entry& entry = find_plugin(plugin->string("`plugin`"), plugin->where());
-  std::vector<std::string> known = settable_names(entry);
-  known.insert(known.begin(), "plugin");
-  const Keys keys(document, value, fmt::format("`{}` ({})", name, plugin->text()), "", known);
-  EstimatorEntry estimator{.name = name,
-                           .plugin = plugin->text(),
-                           .parameters = Value::map({}, value.where()),
-                           .where = document.key(value)};
-  for (const auto& [key, given] : value.members()) {
-    if (key != "plugin") set_parameter(estimator, key, given, scenes);
-  }
-  return estimator;
+  refuse(where, "`{}` ({}) has no parameter `{}`{}", estimator.name, estimator.plugin, key,
+         suggestion(key, names));
 }
 
 /// Reads an entry of `tests:`, without its id and without looking up estimators.
@@ -369,8 +324,7 @@ void check_sweep(const Suite& suite, const TestEntry& test) {
   if (!test.over || test.over->parameter == "primaries") return;
   const EstimatorEntry& estimator =
       *std::ranges::find(suite.estimators, test.claim.left.source.estimator, &EstimatorEntry::name);
-  require_parameter(fmt::format("`{}` ({})", estimator.name, estimator.plugin), estimator,
-                    test.over->parameter, test.over->values[0].where());
+  require_parameter(estimator, test.over->parameter, test.over->values[0].where());
 }
 
 /// Leaves out tests with a mistake, and tests of estimators with a mistake.
@@ -433,6 +387,30 @@ void require_estimator_name(const std::string& name, const Location& where) {
          name);
 }
 
+EstimatorEntry read_estimator(const Document& document, const std::string& name, const Value& value,
+                              const Value& scenes) {
+  if (name.find('{') != std::string::npos) {
+    refuse(document.key(value), "a `: ` is missing before the `{{` of `{}`", name);
+  }
+  require_estimator_name(name, document.key(value));
+  const Value* plugin = value.find("plugin");
+  if (!plugin) {
+    refuse(value.where(), "`{0}` needs the key `plugin`, as in `{0}: {{plugin: luminaire/area}}`",
+           name);
+  }
+  find_plugin(plugin->string("`plugin`"), plugin->where());
+  EstimatorEntry estimator{.name = name,
+                           .plugin = plugin->text(),
+                           .parameters = Value::map({}, value.where()),
+                           .where = document.key(value)};
+  for (const auto& [key, given] : value.members()) {
+    if (key == "plugin") continue;
+    require_parameter(estimator, key, document.key(given));
+    set_parameter(estimator, key, given, scenes);
+  }
+  return estimator;
+}
+
 Value with_member(const Value& map, const std::string& key, const Value& value) {
   std::vector<Value::Member> members = map.members();
   const auto found = std::ranges::find(members, key, &Value::Member::first);
@@ -446,7 +424,7 @@ Value with_member(const Value& map, const std::string& key, const Value& value) 
 
 void set_parameter(EstimatorEntry& estimator, const std::string& key, const Value& value,
                    const Value& scenes) {
-  require_parameter(estimator.plugin, estimator, key, value.where());
+  require_parameter(estimator, key, value.where());
   const bool is_text = value.kind() == Value::Kind::scalar;
   if (key == "primaries") {
     estimator.primaries.reset();

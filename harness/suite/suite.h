@@ -161,6 +161,10 @@ void refuse_overwriting(const std::string& report, const std::vector<std::string
 /// offending key.
 void read_test_keys(const Document& document, const Value& map, TestEntry& test);
 
+/// Reads an entry of `estimators:`. `scenes` is the suite's map `scenes:`.
+EstimatorEntry read_estimator(const Document& document, const std::string& name, const Value& value,
+                              const Value& scenes);
+
 /// Sets `primaries` or a parameter of the plugin; the text of a `scene` may be one of `scenes`.
 /// InputError if the plugin has no such parameter.
 void set_parameter(EstimatorEntry& estimator, const std::string& key, const Value& value,
