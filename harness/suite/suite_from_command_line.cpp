@@ -277,25 +277,20 @@ void add_error(std::vector<Value::Member>& members, const ImagesArguments& argum
   }
 }
 
-Margin within(const ImagesArguments& arguments) {
-  return parse_margin(*arguments.within, place("--within", *arguments.within), "--within");
-}
-
-std::string claim_of(const ImagesArguments& arguments, const std::string& suffix) {
-  if (arguments.question == ImageQuestion::law) {
-    return fmt::format("distribution(candidate{0}) == distribution(reference{0})", suffix);
-  }
-  if (!arguments.within) return fmt::format("mean(candidate{0}) == mean(reference{0})", suffix);
-  within(arguments);
-  return fmt::format("mean(candidate{1}) within {0} of mean(reference{1})", *arguments.within,
-                     suffix);
-}
-
 TestEntry test_of(const ImagesArguments& arguments, const std::string& suffix) {
   TestKeys keys = arguments.keys;
   if (arguments.question == ImageQuestion::paired) keys["paired"] = "true";
-  TestEntry test = harness::test_of("images", claim_of(arguments, suffix), keys);
-  if (arguments.within) test.claim.margin = within(arguments);
+  const char* quantity = arguments.question == ImageQuestion::law ? "distribution" : "mean";
+  std::string relation = "==";
+  Margin margin;
+  if (arguments.within) {
+    margin = parse_margin(*arguments.within, place("--within", *arguments.within), "--within");
+    relation = fmt::format("within {} of", *arguments.within);
+  }
+  TestEntry test = harness::test_of(
+      "images", fmt::format("{0}(candidate{1}) {2} {0}(reference{1})", quantity, suffix, relation),
+      keys);
+  test.claim.margin = margin;
   return test;
 }
 
@@ -323,11 +318,7 @@ EstimatorEntry parse_estimator_option(const std::string& text) {
   }
   require_estimator_name(head->first, where);
   if (std::filesystem::is_regular_file(head->second)) refuse_file(where, head->first, head->second);
-  EstimatorEntry entry{.name = head->first,
-                       .plugin = find_plugin(head->second, where).information.name,
-                       .parameters = Value::map({}, where),
-                       .where = where};
-  std::vector<std::string> seen;
+  std::vector<Value::Member> members{{"plugin", Value::scalar(head->second, where)}};
   for (std::size_t i = 1; i < pieces.size(); ++i) {
     const auto sides = cut(pieces[i], '=');
     if (!sides) {
@@ -336,13 +327,12 @@ EstimatorEntry parse_estimator_option(const std::string& text) {
              "brackets or quotes",
              pieces[i]);
     }
-    if (std::ranges::find(seen, sides->first) != seen.end()) {
+    if (std::ranges::count(members, sides->first, &Value::Member::first) > 0) {
       refuse(where, "`{}` is given twice", sides->first);
     }
-    seen.push_back(sides->first);
-    set_parameter(entry, sides->first, read_flow(sides->second, where), {});
+    members.emplace_back(sides->first, read_flow(sides->second, where));
   }
-  return entry;
+  return read_estimator({}, head->first, Value::map(std::move(members), where), {});
 }
 
 std::vector<EstimatorEntry> estimators_of(const std::vector<Source>& sources,
