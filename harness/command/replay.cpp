@@ -16,7 +16,6 @@
 #include "harness/question/question.h"
 #include "harness/record/record_of.h"
 #include "harness/run/planned_run.h"
-#include "reports/words/number.h"
 #include "reports/words/text.h"
 
 namespace assay::harness {
@@ -194,22 +193,12 @@ std::string shown(const reports::Number& value) {
   return value ? fmt::format("{}", *value) : "none";
 }
 
+reports::Number count(std::uint64_t number) { return static_cast<double>(number); }
+
 bool same_line(const char* what, const reports::Number& now, const reports::Number& then,
                const std::string& note = "") {
   const bool same = now == then;
   fmt::print("  {:<27} {}{}{}\n", what, shown(now), note,
-             same ? "" : fmt::format("   (recorded: {})", shown(then)));
-  return same;
-}
-
-bool same_size(const reports::Sample& now, const reports::Sample& then) {
-  const auto shown = [](const reports::Sample& sample) {
-    return fmt::format(
-        "{} secondaries of {}", sample.secondaries,
-        reports::plain_spaces(reports::counted(sample.primaries, "primary", "primaries")));
-  };
-  const bool same = shown(now) == shown(then);
-  fmt::print("{}.{}: {}{}\n", now.estimator, now.channel, shown(now),
              same ? "" : fmt::format("   (recorded: {})", shown(then)));
   return same;
 }
@@ -225,11 +214,12 @@ bool print_comparison(const reports::Test& now, const reports::Test& then, bool 
   for (std::size_t i = 0; i < now.samples.size() && i < then.samples.size(); ++i) {
     const reports::Sample& is = now.samples[i];
     const reports::Sample& was = then.samples[i];
-    same &= same_size(is, was);
-    const auto count = [](const reports::Sample& x) { return static_cast<double>(x.nonfinite); };
-    if (count(is) + count(was) > 0) {
-      same &=
-          same_line("not finite", count(is), count(was), "; mean and variance are of the others");
+    fmt::print("{}.{}\n", is.estimator, is.channel);
+    same &= same_line("secondaries", count(is.secondaries), count(was.secondaries));
+    same &= same_line("primaries of each", count(is.primaries), count(was.primaries));
+    if (is.nonfinite + was.nonfinite > 0) {
+      same &= same_line("not finite", count(is.nonfinite), count(was.nonfinite),
+                        "; mean and variance are of the others");
     }
     // A cell's number has neither mean nor variance.
     if (is.channel == cell_channel) continue;

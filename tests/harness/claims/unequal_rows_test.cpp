@@ -139,7 +139,7 @@ TEST_F(UnequalRows, AreReplayedWhileTheyAreAsManyAsTheyWere) {
     const Said said = replayed();
     EXPECT_EQ(said.code, 1);
     EXPECT_THAT(said.text,
-                HasSubstr(fmt::format("{} secondaries of 1 primary   (recorded: 250", count)));
+                HasSubstr(fmt::format("{:<27} {}   (recorded: 250", "secondaries", count)));
   }
 }
 

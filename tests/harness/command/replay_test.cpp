@@ -257,7 +257,7 @@ tests:
 )");
   for (const char* test : {"all", "one"}) expect_replayed({.record = file, .test = test}, {});
   place.write("data.txt", "# columns: a b\n1 2\n3 4\n");
-  expect_replayed({.record = file, .test = "all"}, {"2 secondaries of 1 primary   (recorded: 3"},
+  expect_replayed({.record = file, .test = "all"}, {"secondaries                 2   (recorded: 3"},
                   1);
   expect_replayed({.record = file, .test = "all", .observation = 2}, {}, 1);
 }
