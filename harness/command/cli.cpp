@@ -245,17 +245,14 @@ void define_images(Options& options, ImagesCommand& command) {
   options.add({"--samples", "N"}, given.samples,
               "samples in a single reference with its variance, or the channel that counts them; "
               "default what its file says");
-  const auto ask = [&given](ImageQuestion question) {
-    return [&given, question] { given.question = question; };
-  };
-  options.choice("--means", "test if the means are equal; the default", ask(ImageQuestion::means));
+  options.choice("--means", "test if the means are equal; the default", [] {});
   options.choice("--paired",
                  "test differences of pictures with equal seeds, which finds far smaller effects; "
                  "a pair's names agree in the parts that vary within a side",
-                 ask(ImageQuestion::paired));
+                 [&given] { given.keys["paired"] = "true"; });
   options.choice("--law",
                  "test if the sides have one law, as from one renderer; exact for any noise",
-                 ask(ImageQuestion::law));
+                 [&given] { given.quantity = "distribution"; });
   options.add_key(
       {"--detect", "X"}, given.keys,
       "the root mean square difference over all pixels that must not pass, as 0.5% or 0.002; "
@@ -399,14 +396,14 @@ void define_init(Options& options, InitArguments& given) {
 }
 
 void define_completion(Options& options, TextCommand& command) {
-  constexpr std::string_view scripts = "completion/assay.";
-  std::vector<std::pair<std::string, std::string>> shells;
-  for (const CarriedFile& file : carried_files()) {
-    if (!file.path.starts_with(scripts)) continue;
-    shells.emplace_back(file.path.substr(scripts.size()), file.text);
-  }
-  options.add({.name = "SHELL", .needed = "one of bash, fish, zsh"}, command.text,
-              OneOf<std::string>{shells}, "bash, fish or zsh");
+  const Texts shells{"bash", "fish", "zsh"};
+  options.add(
+      {.name = "SHELL", .needed = "one of bash, fish, zsh", .words = shells}, command.text,
+      [shells](const std::string& text, const std::string& option) {
+        const std::string& shell = shells[choice(Value::scalar(text), option, shells)];
+        return std::string(carried_text("completion/assay." + shell));
+      },
+      "bash, fish or zsh");
 }
 
 const std::vector<CommandRow>& command_rows();

@@ -177,16 +177,12 @@ Value with_member(const Value& map, const std::string& key, const Value& value);
 
 // `assay images`: compares two sets of rendered pictures without a suite file.
 
-/// The question about two sets of pictures. Are their means equal? Are the means of differences 0,
-/// where equal names have equal seeds? Is their whole law the same?
-enum class ImageQuestion { means, paired, law };
-
 struct ImagesArguments {
-  std::string candidate;            ///< A pattern of pictures, one observation each.
-  std::string reference;            ///< A pattern, or one file.
-  std::string channels = "usual";   ///< Patterns separated by commas.
-  bool independent_pixels = false;  ///< Pixels of one picture are independent.
-  ImageQuestion question = ImageQuestion::means;
+  std::string candidate;                    ///< A pattern of pictures, one observation each.
+  std::string reference;                    ///< A pattern, or one file.
+  std::string channels = "usual";           ///< Patterns separated by commas.
+  bool independent_pixels = false;          ///< Pixels of one picture are independent.
+  std::string quantity = "mean";            ///< Or "distribution".
   bool ignores_nonfinite = false;           ///< Leaves out pixels that are not finite somewhere.
   std::optional<std::string> mask = {};     ///< A picture; where it is 0 pixels are left out.
   std::optional<std::string> samples = {};  ///< For a reference that carries its variance.

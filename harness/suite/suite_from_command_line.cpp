@@ -278,18 +278,15 @@ void add_error(std::vector<Value::Member>& members, const ImagesArguments& argum
 }
 
 TestEntry test_of(const ImagesArguments& arguments, const std::string& suffix) {
-  TestKeys keys = arguments.keys;
-  if (arguments.question == ImageQuestion::paired) keys["paired"] = "true";
-  const char* quantity = arguments.question == ImageQuestion::law ? "distribution" : "mean";
   std::string relation = "==";
   Margin margin;
   if (arguments.within) {
     margin = parse_margin(*arguments.within, place("--within", *arguments.within), "--within");
     relation = fmt::format("within {} of", *arguments.within);
   }
-  TestEntry test = harness::test_of(
-      "images", fmt::format("{0}(candidate{1}) {2} {0}(reference{1})", quantity, suffix, relation),
-      keys);
+  const std::string claim =
+      fmt::format("{0}(candidate{1}) {2} {0}(reference{1})", arguments.quantity, suffix, relation);
+  TestEntry test = harness::test_of("images", claim, arguments.keys);
   test.claim.margin = margin;
   return test;
 }
@@ -397,7 +394,7 @@ Suite suite_of_images(const ImagesArguments& arguments) {
            "is for a single reference picture with its variance; several pictures show their own");
   }
   if (!one) require_enough(reference);
-  if (one && arguments.question != ImageQuestion::means) {
+  if (one && (arguments.quantity != "mean" || arguments.keys.contains("paired"))) {
     refuse(reference.where,
            "a single picture is a mean, so its pairs and its law are unknown; give as many "
            "pictures as of the candidate");
