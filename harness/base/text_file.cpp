@@ -170,23 +170,18 @@ std::vector<std::string_view> lines_of(std::string_view text) {
 }
 
 void require_utf8(std::string_view text, const std::string& file) {
-  int line = 1;
-  std::size_t start = 0;
-  for (std::size_t i = 0; i < text.size();) {
-    std::size_t next = i;
+  for (std::size_t i = 0, next = 0; i < text.size(); i = next) {
     const char32_t read = reports::next_code_point(text, next);
     const bool invalid = read == reports::replacement_character && next == i + 1;
     const unsigned byte = static_cast<unsigned char>(text[i]);
     const bool space = byte == '\t' || byte == '\n' || byte == '\r';
     if (invalid || (byte < 0x20 && !space) || byte == 0x7F) {
       const char* why = invalid ? "is not UTF-8" : "is a control character";
-      refuse({file, line, static_cast<int>(i - start) + 1},
+      const std::string_view before = text.substr(0, i);
+      const std::size_t start = before.rfind('\n') + 1;  // npos + 1 is 0
+      refuse({file, static_cast<int>(std::ranges::count(before, '\n')) + 1,
+              static_cast<int>(i - start) + 1},
              "the byte 0x{:02x} {}; save the file as UTF-8 text", byte, why);
-    }
-    i = next;
-    if (text[i - 1] == '\n') {
-      ++line;
-      start = i;
     }
   }
 }
