@@ -40,8 +40,5 @@ inline auto SatisfiesClaim(const std::string& claim) {
 
 /// A number, or a number with its standard error: "0.481 +- 0.0001".
 inline auto HasMean(const std::string& value) { return SatisfiesClaim("mean(it) == " + value); }
-inline auto HasVarianceAtMost(const std::string& value) {
-  return SatisfiesClaim("variance(it) <= " + value);
-}
 
 }  // namespace assay::googletest

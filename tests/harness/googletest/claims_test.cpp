@@ -97,7 +97,7 @@ TEST(Claims, OfACallableThatIgnoresItsStreamAreErrors) {
 TEST(Claims, HaveMatchers) {
   EXPECT_THAT(cube, HasMean("0.25"));
   EXPECT_THAT(cube, testing::Not(HasMean("0.3")));
-  EXPECT_THAT(cube, HasVarianceAtMost("0.09"));
+  EXPECT_THAT(cube, SatisfiesClaim("variance(it) <= 0.09"));
   EXPECT_THAT(cube, SatisfiesClaim("mean(it) >= 0.2"));
 }
 
