@@ -392,7 +392,6 @@ void define_init(Options& options, InitArguments& given) {
                .needed = "one of " + listed(kinds),
                .words = kinds},
               given.words, listed(kinds) + "; then a folder, default this one");
-  options.afterwards([&given] { read_kind(given); });
 }
 
 void define_completion(Options& options, TextCommand& command) {

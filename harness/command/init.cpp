@@ -27,6 +27,31 @@ std::vector<CarriedFile> files_of(const std::string& kind) {
   return files;
 }
 
+/// Writes the files and prints what to do with them. Nothing is written if one is there already.
+void write_files(const std::vector<CarriedFile>& files, const std::string& into) try {
+  const std::filesystem::path folder = into;
+  for (const CarriedFile& file : files) {
+    const std::filesystem::path path = folder / file.path;
+    if (file.path == next_steps || !std::filesystem::exists(path)) continue;
+    refuse({}, "`{}` exists already, so nothing is written; name another folder", path.string());
+  }
+  std::string steps;
+  for (const CarriedFile& file : files) {
+    if (file.path == next_steps) {
+      const std::string line = into == "." ? "" : fmt::format("cd {}\n    ", shell_quoted(into));
+      steps = boost::replace_first_copy(std::string(file.text), "@CD@", line);
+      continue;
+    }
+    const std::filesystem::path path = folder / file.path;
+    std::filesystem::create_directories(path.parent_path());
+    write_whole(path, file.text);
+    fmt::print("wrote {}\n", (into == "." ? path.lexically_normal() : path).string());
+  }
+  fmt::print("{}", steps);
+} catch (const std::filesystem::filesystem_error& error) {
+  refuse({}, "cannot write into `{}`: {}; name another folder", into, error.code().message());
+}
+
 }  // namespace
 
 std::vector<std::string> kinds_of_example() {
@@ -40,49 +65,21 @@ std::vector<std::string> kinds_of_example() {
   return kinds;
 }
 
-void read_kind(InitArguments& arguments) {
+int write_example(const InitArguments& arguments) {
   const std::vector<std::string> kinds = kinds_of_example();
   const std::vector<std::string>& words = arguments.words;
   std::string kind;
-  for (std::size_t count = 1; count <= words.size(); ++count) {
-    kind += (count == 1 ? "" : " ") + words[count - 1];
-    if (std::ranges::find(kinds, kind) == kinds.end()) continue;
-    if (words.size() > count + 1) refuse({}, "`{}` is one argument too many", words[count + 1]);
-    arguments.kind = kind;
-    std::ranges::replace(arguments.kind, ' ', '-');
-    if (words.size() > count) arguments.folder = words[count];
-    return;
+  std::size_t count = 0;
+  const auto is_known = [&] { return std::ranges::find(kinds, kind) != kinds.end(); };
+  while (count < words.size() && !is_known()) kind += (kind.empty() ? "" : " ") + words[count++];
+  if (!is_known()) {
+    refuse({}, "there is no example `{}`; there is {}{}", kind, listed(kinds),
+           did_you_mean(kind, kinds));
   }
-  refuse({}, "there is no example `{}`; there is {}{}", kind, listed(kinds),
-         did_you_mean(kind, kinds));
-}
-
-int write_example(const InitArguments& arguments) try {
-  const std::filesystem::path folder = arguments.folder;
-  const std::vector<CarriedFile> files = files_of(arguments.kind);
-  for (const CarriedFile& file : files) {
-    const std::filesystem::path path = folder / file.path;
-    if (file.path == next_steps || !std::filesystem::exists(path)) continue;
-    refuse({}, "`{}` exists already, so nothing is written; name another folder", path.string());
-  }
-  std::string steps;
-  for (const CarriedFile& file : files) {
-    if (file.path == next_steps) {
-      const std::string& into = arguments.folder;
-      const std::string line = into == "." ? "" : fmt::format("cd {}\n    ", shell_quoted(into));
-      steps = boost::replace_first_copy(std::string(file.text), "@CD@", line);
-      continue;
-    }
-    const std::filesystem::path path = folder / file.path;
-    std::filesystem::create_directories(path.parent_path());
-    write_whole(path, file.text);
-    fmt::print("wrote {}\n", (arguments.folder == "." ? path.lexically_normal() : path).string());
-  }
-  fmt::print("{}", steps);
+  if (words.size() > count + 1) refuse({}, "`{}` is one argument too many", words[count + 1]);
+  std::ranges::replace(kind, ' ', '-');
+  write_files(files_of(kind), count < words.size() ? words[count] : ".");
   return 0;
-} catch (const std::filesystem::filesystem_error& error) {
-  refuse({}, "cannot write into `{}`: {}; name another folder", arguments.folder,
-         error.code().message());
 }
 
 }  // namespace assay::harness
