@@ -213,8 +213,7 @@ class Parser {
   }
 
   Margin margin() {
-    const Token token = lexer_.next();
-    if (token.kind != Kind::number) unexpected(token, "a margin, as `0.5%` or `0.002`");
+    const Token token = expect(Kind::number, "a margin, as `0.5%` or `0.002`");
     Margin margin{.value = token.number, .relative = take("%"), .where = token.where};
     if (margin.relative) margin.value = percent(token);
     if (margin.value < 0) refuse(token.where, "a margin cannot be negative");
@@ -414,17 +413,13 @@ class Parser {
     if (!token.is(symbol)) unexpected(token, expected);
   }
 
-  Token expect_word(const char* expected) {
+  Token expect(Kind kind, const char* expected) {
     Token token = lexer_.next();
-    if (token.kind != Kind::word) unexpected(token, expected);
+    if (token.kind != kind) unexpected(token, expected);
     return token;
   }
-
-  double expect_number() {
-    const Token token = lexer_.next();
-    if (token.kind != Kind::number) unexpected(token, "a number");
-    return token.number;
-  }
+  Token expect_word(const char* expected) { return expect(Kind::word, expected); }
+  double expect_number() { return expect(Kind::number, "a number").number; }
 
   [[noreturn]] static void unexpected(const Token& token, const std::string& expected,
                                       const std::string& hint = "") {
