@@ -78,28 +78,6 @@ harness::PreparedEstimator prepared(const Source& source, const std::string& str
           .original = nullptr};
 }
 
-/// One claim with its sources and margins.
-struct Asked {
-  std::map<std::string, harness::PreparedEstimator> estimators = {};
-  harness::TestKeys keys = {};
-};
-
-Asked asked(const std::vector<Part>& parts, const std::string& stream) {
-  Asked result;
-  for (const Part& part : parts) {
-    if (const auto* source = std::get_if<Source>(&part)) {
-      const bool is_new =
-          result.estimators.emplace(source->name, prepared(*source, stream + "/" + source->name))
-              .second;
-      if (!is_new) harness::refuse({}, "two sources are named `{}`", source->name);
-    } else {
-      const Key& key = std::get<Key>(part);
-      result.keys[key.name] = key.text;
-    }
-  }
-  return result;
-}
-
 /// Draws the first observations again. Names the source that gives others; "" if none does.
 std::string unrepeated(const TestWork& work) {
   constexpr std::size_t most = 8;
@@ -131,18 +109,30 @@ std::string unrepeated(const TestWork& work) {
   return "";
 }
 
-/// Tests the claim alone at its share of the budget.
-reports::Test tested(const std::string& claim, const Asked& asked, const ClaimBudget& budget) {
+/// Tests the claim alone at its share of the budget. `stream` separates its random numbers from
+/// those of the binary's other claims.
+reports::Test tested(const std::string& claim, const std::vector<Part>& parts,
+                     const std::string& stream, const ClaimBudget& budget) {
+  std::map<std::string, harness::PreparedEstimator> estimators;
+  harness::TestKeys keys;
+  for (const Part& part : parts) {
+    if (const auto* key = std::get_if<Key>(&part)) keys[key->name] = key->text;
+    const auto* const source = std::get_if<Source>(&part);
+    if (source == nullptr) continue;
+    const auto its = prepared(*source, stream + "/" + source->name);
+    if (!estimators.emplace(source->name, its).second) {
+      harness::refuse({}, "two sources are named `{}`", source->name);
+    }
+  }
   const std::string given = harness::system_environment("ASSAY_SEED");
   const std::uint64_t seed = given.empty() ? budget.seed : harness::read_seed(given, "ASSAY_SEED");
   Suite suite{.name = "googletest",
               .stem = "googletest",
               .alpha = budget.alpha / static_cast<double>(budget.claims),
               .beta = budget.beta};
-  suite.tests = {harness::test_of("check", claim, asked.keys)};
+  suite.tests = {harness::test_of("check", claim, keys)};
   suite.tests[0].where = {};
-  const harness::Question question =
-      harness::ask_as_written(suite.tests[0], asked.estimators, seed);
+  const harness::Question question = harness::ask_as_written(suite.tests[0], estimators, seed);
   const harness::Pilots pilots = harness::pilots_of({question}, seed, *harness::threads());
   TestWork work{.outcome = harness::plan_alone(suite, question, pilots)};
   harness::Pools pools;
@@ -200,8 +190,8 @@ testing::AssertionResult judged(const std::string& claim, const std::vector<Part
   }
   const std::uint64_t number = ++state.in_test;
   testing::Test::RecordProperty(fmt::format("claim_{}", number), claim);
-  const Asked sources = asked(parts, current_test() + "#" + std::to_string(number));
-  reports::Test test = tested(claim, sources, *state.budget);
+  const reports::Test test =
+      tested(claim, parts, fmt::format("{}#{}", current_test(), number), *state.budget);
   record(test, number);
   const bool holds = test.verdict == reports::Verdict::pass;
   std::string whole = reports::plain_text(test);  // "message: …" and further facts
