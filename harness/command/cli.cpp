@@ -95,22 +95,17 @@ void add_quiet(Options& options, Output& output) {
                [&output] { output.quiet = true; });
 }
 
-/// Texts that differ between the commands that sample and judge.
-struct Running {
-  const char* seed;
-  const char* alpha;
-};
-
-void add_sampling(Options& options, SamplingCommand& command, const Running& about) {
+/// Commands that sample and judge differ in what seed and alpha are of.
+void add_sampling(Options& options, SamplingCommand& command, const char* seed, const char* alpha) {
   options.add({"--seed", "N|random", Replay::no, "", {"random"}}, command.options.seed, read_seed,
-              about.seed);
+              seed);
   add_threads(options, command.options.threads);
-  options.add({"--alpha", "A"}, command.options.alpha, read_error_rate, about.alpha);
+  options.add({"--alpha", "A"}, command.options.alpha, read_error_rate, alpha);
   add_quiet(options, command.output);
 }
 
-void add_running(Options& options, SamplingCommand& command, const Running& about) {
-  add_sampling(options, command, about);
+void add_running(Options& options, SamplingCommand& command, const char* seed, const char* alpha) {
+  add_sampling(options, command, seed, alpha);
   add_inconclusive(options, command.output);
   add_output(options, command.output);
   options.repeat_by(command.options.command);
@@ -140,11 +135,11 @@ void add_suites(Options& options, SuitesCommand& command) {
               "multiply every `detect` by F, above 0; that of a law is at most 0.5; default 1");
 }
 
-constexpr Running of_suites{
-    .seed = "seed of all random numbers; random: a fresh one; default the suite's, else 1",
-    .alpha =
-        "greatest probability that a suite of true claims fails, in [1e-9, 0.5]; default the "
-        "suite's, else 0.01"};
+constexpr const char* seed_of_suites =
+    "seed of all random numbers; random: a fresh one; default the suite's, else 1";
+constexpr const char* alpha_of_suites =
+    "greatest probability that a suite of true claims fails, in [1e-9, 0.5]; default the suite's, "
+    "else 0.01";
 
 // The commands.
 
@@ -165,7 +160,7 @@ void define_run(Options& options, RunCommand& command) {
   options.add({"--ledger", "FILE", Replay::no, "", {"*"}}, command.options.ledger,
               "add the run's evidence to that of earlier runs with fresh seeds; fail if all "
               "together refute a claim; default none");
-  add_running(options, command, of_suites);
+  add_running(options, command, seed_of_suites, alpha_of_suites);
 }
 
 void define_plan(Options& options, PlanCommand& command) {
@@ -174,7 +169,7 @@ void define_plan(Options& options, PlanCommand& command) {
                "print the missing renders instead of the plan, one a line: command, seed and "
                "file, separated by tabs; first of the pilots, then of the tests; default the plan",
                [&command] { command.list_renders = true; });
-  add_sampling(options, command, of_suites);
+  add_sampling(options, command, seed_of_suites, alpha_of_suites);
 }
 
 void define_check(Options& options, CheckCommand& command) {
@@ -211,10 +206,8 @@ void define_check(Options& options, CheckCommand& command) {
               "primary estimates of an observation; default chosen from the pilot");
   options.add_key({"--secondaries", "M"}, given.keys,
                   "number of observations, 2 or more; default what --detect needs");
-  add_running(
-      options, command,
-      {.seed = "seed of all random numbers; random: a fresh one; default 1",
-       .alpha = "greatest probability that a true claim fails, in [1e-9, 0.5]; default 0.01"});
+  add_running(options, command, "seed of all random numbers; random: a fresh one; default 1",
+              "greatest probability that a true claim fails, in [1e-9, 0.5]; default 0.01");
 }
 
 void define_images(Options& options, ImagesCommand& command) {
@@ -262,10 +255,8 @@ void define_images(Options& options, ImagesCommand& command) {
                   "also tolerates a wrong pixel; default 0");
   options.add({"--within", "X"}, given.within,
               "prove that the pictures differ by less, as 1% or 0.002; default test for equality");
-  add_running(
-      options, command,
-      {.seed = "seed of the random signs in tests of dependent pixels; default 1",
-       .alpha = "greatest probability that equal pictures fail, in [1e-9, 0.5]; default 0.01"});
+  add_running(options, command, "seed of the random signs in tests of dependent pixels; default 1",
+              "greatest probability that equal pictures fail, in [1e-9, 0.5]; default 0.01");
 }
 
 void define_sample(Options& options, SampleArguments& given) {
