@@ -22,15 +22,10 @@ Texts subcommand_names(const CLI::App& app) {
   return mapped(app.get_subcommands({}), [](const CLI::App* sub) { return sub->get_name(); });
 }
 
-/// The suite's key that does the same as an option of `check`.
-std::string key_of_a_suite(const CLI::App& sub, const std::string& option) {
-  if (sub.get_name() != "run" && sub.get_name() != "plan") return "";
-  for (const char* key : {"detect", "allow", "test", "over", "reference", "cost", "budget",
-                          "paired", "primaries", "secondaries"}) {
-    if (option == std::string("--") + key) return key;
-  }
-  return "";
-}
+/// Options of `check` that are keys in a suite.
+constexpr const char* keys_of_a_suite[] = {"--detect",    "--allow",      "--test",   "--over",
+                                           "--reference", "--cost",       "--budget", "--paired",
+                                           "--primaries", "--secondaries"};
 
 /// Says what to write in place of an argument too many.
 std::string mend_of_extra(const std::string& command, const std::string& extra) {
@@ -67,8 +62,9 @@ void refuse_extras(const CLI::App& sub) {
     const std::string near = nearest(name, names);
     std::string mend = near.empty() ? fmt::format("see `assay {} --help`", sub.get_name())
                                     : fmt::format("did you mean `{}`?", near);
-    if (const std::string key = key_of_a_suite(sub, name); !key.empty()) {
-      mend = fmt::format("write it into the suite, as the key `{}`", key);
+    const bool of_suites = sub.get_name() == "run" || sub.get_name() == "plan";
+    if (of_suites && std::ranges::count(keys_of_a_suite, name) > 0) {
+      mend = fmt::format("write it into the suite, as the key `{}`", name.substr(2));
     }
     refuse({}, "`assay {}` has no option `{}`; {}", sub.get_name(), name, mend);
   }
