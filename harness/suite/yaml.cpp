@@ -96,8 +96,10 @@ class DocumentBuilder final : public YAML::EventHandler {
     refuse(dash_before(mark), "a list item without a value");
   }
 
-  void OnAlias(const YAML::Mark& mark, YAML::anchor_t) override { refuse_alias(mark); }
-  void OnAnchor(const YAML::Mark& mark, const std::string&) override { refuse_alias(mark); }
+  void OnAlias(const YAML::Mark& mark, YAML::anchor_t) override {
+    refuse(place(mark), std::string(no_aliases));
+  }
+  void OnAnchor(const YAML::Mark& mark, const std::string&) override { OnAlias(mark, {}); }
 
   void OnScalar(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t,
                 const std::string& text) override {
@@ -111,19 +113,13 @@ class DocumentBuilder final : public YAML::EventHandler {
                        YAML::EmitterStyle::value) override {
     open(mark, tag, false);
   }
-  void OnSequenceEnd() override {
-    Frame frame = close();
-    add(Value::list(std::move(frame.items), frame.where));
-  }
+  void OnSequenceEnd() override { close(); }
 
   void OnMapStart(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t,
                   YAML::EmitterStyle::value) override {
     open(mark, tag, true);
   }
-  void OnMapEnd() override {
-    Frame frame = close();
-    add(Value::map(std::move(frame.members), frame.where));
-  }
+  void OnMapEnd() override { close(); }
 
  private:
   struct Frame {
@@ -190,10 +186,11 @@ class DocumentBuilder final : public YAML::EventHandler {
     open_.push_back({.map = map, .where = place(mark)});
   }
 
-  Frame close() {
+  void close() {
     Frame frame = std::move(open_.back());
     open_.pop_back();
-    return frame;
+    add(frame.map ? Value::map(std::move(frame.members), frame.where)
+                  : Value::list(std::move(frame.items), frame.where));
   }
 
   void add(Value value) {
@@ -230,10 +227,6 @@ class DocumentBuilder final : public YAML::EventHandler {
   void refuse_tag(const YAML::Mark& mark, const std::string& tag) const {
     if (tag.empty() || tag == "?" || tag == "!") return;
     refuse(place(mark), "the tag `{}` is not read; leave it out", tag);
-  }
-
-  [[noreturn]] void refuse_alias(const YAML::Mark& mark) const {
-    refuse(place(mark), std::string(no_aliases));
   }
 
   Document& document_;
