@@ -34,12 +34,6 @@ constexpr std::chrono::milliseconds line_period = 1min;
 std::mutex terminal;
 std::ostream* bar_on = nullptr;
 
-std::string bar(double fraction, int width) {
-  const auto filled = static_cast<std::size_t>(fraction * width);
-  return "[" + std::string(filled, '#') +
-         std::string(static_cast<std::size_t>(width) - filled, '.') + "]";
-}
-
 double fraction(const Phase& phase, std::uint64_t done) {
   return phase.total == 0
              ? 0
@@ -124,8 +118,10 @@ void ProgressLine::draw(std::uint64_t done) {
   bar_on = &out_;
   // The last column stays free: some terminals begin a line after it.
   const int width = width_() - 1;
-  const std::string filled = bar(fraction(phase_, done), std::min(widest, width / 3));
-  out_ << wipe << reports::shorten(filled + " " + text(done), width) << std::flush;
+  const int room = std::min(widest, width / 3);
+  std::string bar(static_cast<std::size_t>(room), '.');
+  std::fill_n(bar.begin(), static_cast<int>(fraction(phase_, done) * room), '#');
+  out_ << wipe << reports::shorten(fmt::format("[{}] {}", bar, text(done)), width) << std::flush;
 }
 
 void ProgressLine::end() {

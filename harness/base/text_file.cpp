@@ -70,17 +70,13 @@ bool is_current(const OpenFile& file, const fs::path& path) {
          open.st_dev == named.st_dev && open.st_ino == named.st_ino;
 }
 
-// A name that no other process takes.
-fs::path temporary_beside(const fs::path& target) {
-  const fs::path folder = target.has_parent_path() ? target.parent_path() : fs::path(".");
-  remove_left_overs(folder);
-  return folder / fmt::format("{}{}{}", temporary_begin, ::getpid(), temporary_end);
-}
-
 // A new file beside the target, locked, and removed unless it takes the target's place.
 class Temporary {
  public:
-  explicit Temporary(const fs::path& target) : file_(temporary_beside(target)), target_(target) {
+  explicit Temporary(const fs::path& target) : target_(target) {
+    const fs::path folder = target.has_parent_path() ? target.parent_path() : fs::path(".");
+    remove_left_overs(folder);
+    file_ = folder / fmt::format("{}{}{}", temporary_begin, ::getpid(), temporary_end);
     do {
       ::unlink(file_.c_str());
       open_.emplace(file_, O_CREAT | O_EXCL | O_WRONLY, target_);
