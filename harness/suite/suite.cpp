@@ -131,10 +131,6 @@ void check_test(const TestEntry& test) {
 
 using Tests = std::vector<TestEntry>;
 
-bool is_in(const std::vector<std::string>& names, const std::string& name) {
-  return std::ranges::count(names, name) > 0;
-}
-
 /// An exact name goes before a glob: a claim's factor contains an asterisk.
 std::vector<const TestEntry*> tests_named(const std::string& name, const Tests& tests) {
   std::vector<const TestEntry*> found;
@@ -145,6 +141,7 @@ std::vector<const TestEntry*> tests_named(const std::string& name, const Tests& 
   return found;
 }
 
+/// A glob is replaced by the tests that it matches.
 std::vector<std::string> read_names(const Keys& keys, const char* key, const Tests& tests) {
   const Value* list = keys.find(key);
   if (list == nullptr) return {};
@@ -163,7 +160,7 @@ std::vector<std::string> read_names(const Keys& keys, const char* key, const Tes
       if (test->expect != reports::Verdict::pass && test->expect != reports::Verdict::fail) {
         refuse(item.where(), "`{}` expects no decision, so it answers nothing", test->name);
       }
-      if (!is_in(names, test->name)) names.push_back(test->name);
+      if (std::ranges::count(names, test->name) == 0) names.push_back(test->name);
     }
   }
   return names;
@@ -175,7 +172,7 @@ void check(const reports::Statement& statement, const Location& where) {
     refuse(where, "a statement needs tests that answer it: `holds`, `fails`, or both");
   }
   for (const std::string& name : statement.fails) {
-    if (!is_in(statement.holds, name)) continue;
+    if (std::ranges::count(statement.holds, name) == 0) continue;
     refuse(where, "`{}` cannot be under both `holds` and `fails`", name);
   }
   if (both == statement.condition.empty()) {
@@ -248,15 +245,6 @@ TestEntry read_test(const Document& document, const Value& value) {
   test.name = name ? one_line(*name, "`name`") : test.claim.text;
   read_test_keys(document, value, test);
   return test;
-}
-
-/// Reads `statements:`. A glob in `holds` or `fails` is replaced by the tests that it matches.
-std::vector<reports::Statement> read_statements(const Document& document, const Value& list,
-                                                const Tests& tests) {
-  const auto& items = items_of(list,
-                               "`statements` must be a list of at least one, as in `- {text: they "
-                               "agree, source: a talk, holds: [a test]}`");
-  return mapped(items, [&](const Value& item) { return read_statement(document, item, tests); });
 }
 
 void read_head(const Document& document, const Keys& keys, Suite& suite) {
@@ -509,7 +497,12 @@ Suite read_suite(const std::string& file, Mistakes& mistakes) {
     read_tests(document, keys.require("tests", "tests: [claim: mean(area) == analytic]"),
                estimators, suite, mistakes);
     const Value* const statements = mistakes.any() ? nullptr : keys.find("statements");
-    if (statements) suite.statements = read_statements(document, *statements, suite.tests);
+    if (!statements) return;
+    suite.statements = mapped(
+        items_of(*statements,
+                 "`statements` must be a list of at least one, as in `- {text: they agree, source: "
+                 "a talk, holds: [a test]}`"),
+        [&](const Value& item) { return read_statement(document, item, suite.tests); });
   });
   return suite;
 }

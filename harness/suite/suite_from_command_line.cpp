@@ -29,27 +29,6 @@ std::optional<std::pair<std::string, std::string>> cut(const std::string& text, 
   return std::pair{text.substr(0, at), text.substr(at + 1)};
 }
 
-/// Does one `estimator.key=value`.
-void assign(std::vector<Suite>& suites, const std::string& assignment) {
-  const Location where{"--set " + assignment, 0, 0};
-  const auto sides = cut(assignment, '=');
-  const auto path = sides ? cut(sides->first, '.') : std::nullopt;
-  if (!path || path->first.empty() || path->second.empty()) {
-    refuse(where, "expected estimator.key=value; put a value with commas in brackets or quotes");
-  }
-  const auto& [name, key] = *path;
-  const Value value = read_flow(sides->second, where);
-  std::vector<std::string> names;
-  for (Suite& suite : suites) {
-    for (EstimatorEntry& estimator : suite.estimators) {
-      names.push_back(estimator.name);
-      if (estimator.name == name) set_parameter(estimator, key, value, suite.scenes);
-    }
-  }
-  if (std::ranges::count(names, name) > 0) return;
-  refuse(where, "no suite has an estimator `{}`{}", name, suggestion(name, names));
-}
-
 /// Null if no entry has the name.
 const EstimatorEntry* entry_named(const std::vector<EstimatorEntry>& entries,
                                   const std::string& name) {
@@ -302,7 +281,25 @@ std::unique_ptr<const PictureFile> opened(const std::string& file, const Locatio
 }  // namespace
 
 void set_parameter(std::vector<Suite>& suites, const std::string& assignment) {
-  for (const std::string& piece : split_outside_brackets(assignment)) assign(suites, piece);
+  for (const std::string& piece : split_outside_brackets(assignment)) {
+    const Location where{"--set " + piece, 0, 0};
+    const auto sides = cut(piece, '=');
+    const auto path = sides ? cut(sides->first, '.') : std::nullopt;
+    if (!path || path->first.empty() || path->second.empty()) {
+      refuse(where, "expected estimator.key=value; put a value with commas in brackets or quotes");
+    }
+    const auto& [name, key] = *path;
+    const Value value = read_flow(sides->second, where);
+    std::vector<std::string> names;
+    for (Suite& suite : suites) {
+      for (EstimatorEntry& estimator : suite.estimators) {
+        names.push_back(estimator.name);
+        if (estimator.name == name) set_parameter(estimator, key, value, suite.scenes);
+      }
+    }
+    if (std::ranges::count(names, name) > 0) continue;
+    refuse(where, "no suite has an estimator `{}`{}", name, suggestion(name, names));
+  }
 }
 
 EstimatorEntry parse_estimator_option(const std::string& text) {
