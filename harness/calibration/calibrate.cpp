@@ -83,7 +83,8 @@ EstimatorEntry picture_of(const std::string& law, const std::string& name) {
 
 double shift_at_law_effect(const Facts& facts) {
   const Claim claim = parse_claim("distribution(x) == " + facts.law, {});
-  const std::function<double(double)> cdf = law_cdf(std::get<Law>(claim.right));
+  const Law& law = std::get<Law>(claim.right);
+  const std::function<double(double)> cdf = find_law(law.name)->cdf(law.arguments);
   const auto distance_at = [&](double shift) {  // sup over x of P(x - shift < X <= x)
     constexpr int steps = 2000;
     double largest = 0;

@@ -402,7 +402,7 @@ stats::DeclaredLaw declared_law(const Question& question, std::size_t channel) {
   const auto* draws = dynamic_cast<const SamplerSetup*>(question.subjects[0].setup.get());
   stats::DeclaredLaw declared;
   if (!question.law.name.empty()) {
-    declared.law = law_cdf(question.law);
+    declared.law = find_law(question.law.name)->cdf(question.law.arguments);
   } else {
     const stats::TabulatedLaw& table = draws->marginal_law(question.channel_name(channel));
     declared.law = std::cref(table);

@@ -95,8 +95,4 @@ void check_law(const Law& law) {
   }
 }
 
-std::function<double(double)> law_cdf(const Law& law) {
-  return find_law(law.name)->cdf(law.arguments);
-}
-
 }  // namespace assay::harness

@@ -18,6 +18,7 @@ struct LawParameter {
 struct LawInformation {
   std::string name;
   std::vector<LawParameter> parameters;
+  /// Gives the distribution function P(X <= x), by Boost.Math.
   std::function<double(double)> (*cdf)(const std::vector<double>& arguments);
 };
 
@@ -29,9 +30,6 @@ const LawInformation* find_law(std::string_view name);
 
 /// InputError at the law's place for a wrong number of arguments or an argument out of range.
 void check_law(const Law&);
-
-/// The distribution function P(X <= x), by Boost.Math. The law must have passed check_law().
-std::function<double(double)> law_cdf(const Law& law);
 
 /// "normal(mean, sd)".
 std::string signature(const LawInformation&);
