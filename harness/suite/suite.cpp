@@ -299,22 +299,6 @@ void read_estimators(const Document& document, const Value& map, Suite& suite, M
   }
 }
 
-/// False if the estimator has a mistake. `entries` is the suite's map `estimators:`.
-bool is_sound(const Suite& suite, const Value& entries, const Source& source) {
-  if (entries.find(source.estimator) == nullptr) {
-    refuse(source.where, "the suite has no estimator `{}`{}", source.estimator,
-           suggestion(source.estimator, mapped(entries.members(), &Value::Member::first)));
-  }
-  return std::ranges::count(suite.estimators, source.estimator, &EstimatorEntry::name) > 0;
-}
-
-void check_sweep(const Suite& suite, const TestEntry& test) {
-  if (!test.over || test.over->parameter == "primaries") return;
-  const EstimatorEntry& estimator =
-      *std::ranges::find(suite.estimators, test.claim.left.source.estimator, &EstimatorEntry::name);
-  require_parameter(estimator, test.over->parameter, test.over->values[0].where());
-}
-
 /// Leaves out tests with a mistake, and tests of estimators with a mistake.
 void read_tests(const Document& document, const Value& list, const Value& estimators, Suite& suite,
                 Mistakes& mistakes) {
@@ -324,7 +308,12 @@ void read_tests(const Document& document, const Value& list, const Value& estima
     test.id = suite.stem + "/" + test.name;
     bool sound = true;
     for (const Source& source : sources_of(test)) {
-      sound = is_sound(suite, estimators, source) && sound;
+      const std::string& name = source.estimator;
+      if (estimators.find(name) == nullptr) {
+        refuse(source.where, "the suite has no estimator `{}`{}", name,
+               suggestion(name, mapped(estimators.members(), &Value::Member::first)));
+      }
+      sound &= std::ranges::count(suite.estimators, name, &EstimatorEntry::name) > 0;
     }
     const auto [first, is_new] = names.emplace(test.name, test.where);
     if (!is_new) {
@@ -334,7 +323,11 @@ void read_tests(const Document& document, const Value& list, const Value& estima
           test.name, first->second.line, first->second.column);
     }
     if (!sound) return;
-    check_sweep(suite, test);
+    if (test.over && test.over->parameter != "primaries") {
+      require_parameter(*std::ranges::find(suite.estimators, test.claim.left.source.estimator,
+                                           &EstimatorEntry::name),
+                        test.over->parameter, test.over->values[0].where());
+    }
     suite.tests.push_back(std::move(test));
   };
   for (const Value& item :
