@@ -52,8 +52,6 @@ std::string digest_of(const std::string& file) {
                      std::filesystem::file_size(file, ignored));
 }
 
-// ---- Runs
-
 /// Tells of the first doubtful margin. A single test tells it with its verdict.
 void note_margins(const PlannedRun& planned) {
   std::vector<std::string> doubts;
@@ -174,8 +172,6 @@ reports::Record run_in_arena(const std::vector<Suite>& suites, const RunOptions&
   }
   return record;
 }
-
-// ---- Samples
 
 constexpr std::uint64_t usual = 10;
 

@@ -41,8 +41,6 @@ std::string usage(const CommandText& command) {
   return text;
 }
 
-// The manual page.
-
 std::string roff(const std::string& text) {
   std::string out;
   for (std::size_t i = 0; i < text.size(); ++i) {
@@ -74,8 +72,6 @@ std::string roff_section(const CommandText& command) {
   }
   return text;
 }
-
-// Completion.
 
 using Offers = std::vector<std::pair<std::string, std::string>>;
 
@@ -130,8 +126,6 @@ Offers offers_of(const std::vector<CommandText>& commands, const std::vector<std
   }
   return offers;
 }
-
-// ---- Manuals and tables
 
 /// A row of a section; its further lines are indented.
 std::string row_text(const std::string& text) { return "  " + wrapped(text, 6).substr(6); }
