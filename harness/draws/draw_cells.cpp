@@ -8,6 +8,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <numeric>
 #include <stdexcept>
 #include <utility>
 
@@ -245,17 +246,27 @@ class OnChart {
 };
 
 /// Points that a sampler draws show the quadrature where its density has peaks.
+std::vector<Point> densest_first(std::span<const Point> drawn, const Densities& densities) {
+  std::vector<double> values(drawn.size());
+  write_all(densities, drawn, values);
+  std::vector<std::size_t> order(drawn.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::ranges::stable_sort(order, std::greater(), [&](std::size_t i) { return values[i]; });
+  return mapped(order, [&](std::size_t i) { return drawn[i]; });
+}
+
 stats::LineDensity line_density(const Sampler& sampler, std::span<const Point> drawn,
                                 Densities densities) {
+  const std::vector<double> places =
+      mapped(densest_first(drawn, densities), [](const Point& point) { return point[0]; });
   const auto values = [densities = std::move(densities)](std::span<const double> x,
                                                          std::span<double> out) {
     write_all(densities, mapped(x, [](double each) { return Point{each, 0, 0}; }), out);
   };
-  std::vector<double> places = mapped(drawn, [](const Point& point) { return point[0]; });
   const stats::Span whole{sampler.bounds()[0], sampler.bounds()[1]};
   return {.values = values,
           .panels = {.equal = sampler.panels().first,
-                     .borders = stats::borders_of_peaks(std::move(places), whole)}};
+                     .borders = stats::borders_of_peaks(places, whole)}};
 }
 
 /// The density on a domain of two coordinates, in its chart by this marginal, 0 or 1. It asks for
@@ -269,20 +280,19 @@ stats::PlaneDensity plane_density(const Sampler& sampler, std::size_t marginal,
     std::size_t& larger = panels.first > panels.second ? panels.first : panels.second;
     larger = (larger + 1) / 2;
   }
-  std::vector<std::array<double, 2>> at;
+  const auto on_chart = [&](const Point& point) { return chart.coordinates(point); };
   std::array<std::vector<double>, 2> places;
-  for (const Point& point : drawn) {
-    at.push_back(chart.coordinates(point));
-    for (std::size_t i = 0; i < 2; ++i) places[i].push_back(at.back()[i]);
+  for (const Point& point : densest_first(drawn, densities)) {
+    for (std::size_t i = 0; i < 2; ++i) places[i].push_back(on_chart(point)[i]);
   }
   return {.x = chart.first,
           .y = chart.second,
           .values = OnChart(chart, std::move(densities)),
           .x_panels = {.equal = marginal == 0 ? panels.first : panels.second,
-                       .borders = stats::borders_of_peaks(std::move(places[0]), chart.first)},
+                       .borders = stats::borders_of_peaks(places[0], chart.first)},
           .y_panels = {.equal = marginal == 0 ? panels.second : panels.first,
-                       .borders = stats::borders_of_peaks(std::move(places[1]), chart.second)},
-          .drawn = std::move(at)};
+                       .borders = stats::borders_of_peaks(places[1], chart.second)},
+          .drawn = mapped(drawn, on_chart)};
 }
 
 constexpr stats::QuadratureLimits table_limits{.tolerance = 1e-7};

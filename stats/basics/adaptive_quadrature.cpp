@@ -296,22 +296,48 @@ std::vector<Span> cut(Span span, Span whole, const Panelling& panels) {
   return parts;
 }
 
-std::vector<double> borders_of_peaks(std::vector<double> values, Span whole) {
-  constexpr std::size_t quantiles = 32;
-  constexpr double close = 1.0 / 1024;
-  if (values.size() <= quantiles) return {};
-  std::ranges::sort(values);
+namespace {
+
+constexpr std::size_t quantiles = 32;
+
+std::vector<double> quantiles_of(std::span<const double> values) {
+  std::vector<double> sorted(values.begin(), values.end());
+  std::ranges::sort(sorted);
   std::vector<double> all;
   for (std::size_t k = 0; k <= quantiles; ++k) {
-    const double value = values[k * (values.size() - 1) / quantiles];
+    const double value = sorted[k * (sorted.size() - 1) / quantiles];
     if (all.empty() || value > all.back()) all.push_back(value);
   }
+  return all;
+}
+
+}  // namespace
+
+std::vector<double> borders_of_peaks(std::span<const double> values, Span whole) {
+  constexpr std::size_t strata = 32;
+  const double close = whole.width() / 1024;
+  if (values.size() <= quantiles) return {};
   std::vector<double> near;
+  const std::vector<double> all = quantiles_of(values);
   for (std::size_t i = 0; i < all.size(); ++i) {
     if (!(all[i] > whole.low && all[i] < whole.high)) continue;
-    const bool below = i > 0 && all[i] - all[i - 1] < close * whole.width();
-    const bool above = i + 1 < all.size() && all[i + 1] - all[i] < close * whole.width();
+    const bool below = i > 0 && all[i] - all[i - 1] < close;
+    const bool above = i + 1 < all.size() && all[i + 1] - all[i] < close;
     if (below || above) near.push_back(all[i]);
+  }
+  // A peak of few values stands out among those of its own density.
+  for (std::size_t k = 0; k < strata; ++k) {
+    const std::size_t first = k * values.size() / strata;
+    const auto stratum = values.subspan(first, (k + 1) * values.size() / strata - first);
+    if (stratum.size() <= quantiles) return {};
+    const std::vector<double> some = quantiles_of(stratum);
+    for (std::size_t i = 1; i + 1 < some.size(); ++i) {
+      const double gap = std::max(some[i] - some[i - 1], some[i + 1] - some[i]);
+      const auto after = std::ranges::lower_bound(near, some[i]);
+      const bool is_near = (after != near.end() && *after - some[i] < 16 * gap) ||
+                           (after != near.begin() && some[i] - after[-1] < 16 * gap);
+      if (gap < close && !is_near) near.insert(after, some[i]);
+    }
   }
   std::vector<double> borders = near;
   for (std::size_t i = 0; i < near.size(); ++i) {

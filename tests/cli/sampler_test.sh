@@ -218,7 +218,7 @@ test_densities_that_break_are_errors_and_the_others_finish() {
     verdict_is run.json "$name" error
     verdict_is run.json "$name drawn" error
     message run.json "$name"
-    tells err "the density that \`$name\` declares cannot be computed: sampler \`cosine\` at (0."
+    tells err "the density that \`$name\` declares cannot be computed: sampler \`cosine\` at ("
     message run.json "$name drawn"
     tells err "\`$name\` stopped at observation "
     tells err 'sampler `cosine` at ('

@@ -183,6 +183,37 @@ TEST(AdaptiveCells, DrawsLeadToPeaksThatNoNodeMeets) {
   expect_a_partition(found.cells);
 }
 
+// One value in a hundred belongs to a peak, so that no quantile of all need lie in it.
+TEST(AdaptiveCells, APeakOfFewDrawsStandsOutAmongThoseOfItsDensity) {
+  const auto normal = [](double x) {
+    const double z = (x - .613) / 1e-4;
+    return std::exp(-z * z / 2) / (1e-4 * std::sqrt(2 * std::numbers::pi));
+  };
+  PlaneDensity density =
+      on_unit_square([&](double x, double y) { return .99 + .01 * normal(x) * normal(y); });
+  for (const std::uint32_t seed : {1u, 2u, 3u, 4u}) {
+    Philox random(32, seed);
+    std::vector<std::array<double, 2>> drawn;
+    for (int i = 0; i < 4096; ++i) {
+      const bool in_peak = random.uniform() < .01;
+      const auto draw = [&] { return in_peak ? .613 + 1e-4 * random.normal() : random.uniform(); };
+      drawn.push_back({draw(), draw()});
+    }
+    const auto borders = [&](std::size_t k) {
+      std::vector<double> places;
+      for (const auto& at : drawn) places.push_back(at[k]);
+      return borders_of_peaks(places, density.x);
+    };
+    density.drawn = drawn;
+    std::ranges::stable_sort(drawn, std::greater(),
+                             [&](const auto& at) { return normal(at[0]) * normal(at[1]); });
+    density.x_panels.borders = borders(0);
+    density.y_panels.borders = borders(1);
+    const auto found = adaptive_cells(unit_grid(16, 32), density, 1.0 / 40, {.tolerance = 1e-8});
+    EXPECT_NEAR(found.mass.total, 1, 1e-6) << seed;
+  }
+}
+
 TEST(AdaptiveCells, WithoutEvaluationsACellStaysWhole) {
   std::uint64_t evaluations = 0;
   const auto counted = [&](double x, double y) {
