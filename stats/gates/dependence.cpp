@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <numeric>
 
@@ -129,14 +130,14 @@ Moments batch_means(std::span<const double> values, std::size_t length) {
 }
 
 std::vector<LaggedCorrelation> lagged_correlations(std::span<const double> values,
-                                                   std::size_t first) {
+                                                   std::size_t first, std::size_t last) {
   const std::size_t n = values.size();
   const bool constant =
       std::ranges::adjacent_find(values, std::ranges::not_equal_to{}) == values.end();
   if (n < 8 || constant) return {};
   const std::vector<double> ranks = centred_ranks(values);
   const double squares = sum_of_products(ranks, ranks);
-  const std::size_t farthest = std::min({n / 4, most_lags, most_products / n});
+  const std::size_t farthest = std::min({last, n / 4, most_lags, most_products / n});
   const double count = static_cast<double>(n);
   std::vector<LaggedCorrelation> all;
   for (std::size_t lag = first; lag <= farthest; ++lag) {
@@ -195,6 +196,7 @@ constexpr double false_allowance = 0.05;
 // Correlations cost up to the square of this number.
 constexpr std::size_t most_correlated = 8192;
 constexpr std::size_t most_lagged = 2048;
+constexpr std::size_t most_short = 16;
 constexpr std::size_t shortest_rank_batch = 8;
 constexpr std::size_t fewest_rank_batches = 8;
 
@@ -336,10 +338,11 @@ Gate lagged_gate(std::span<const double> values) {
 
 std::vector<Gate> drawn_order_gates(std::span<const double> values) {
   if (values.size() < 8) return {};
+  std::vector<LaggedCorrelation> lags = lagged_correlations(values, 1, most_short);
   const auto first = values.first(std::min(values.size(), most_lagged));
+  std::ranges::copy(lagged_correlations(first, most_short + 1), std::back_inserter(lags));
   std::vector<Gate> gates{
-      gate_of_lags(lagged_correlations(first, 1), "rank correlation of drawn observations",
-                   false_red_of_draws),
+      gate_of_lags(lags, "rank correlation of drawn observations", false_red_of_draws),
       gate_of_rank_batches(values)};
   if (const auto again = repeated_run(values)) {
     const auto length = static_cast<double>(again->length);

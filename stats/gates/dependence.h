@@ -47,7 +47,7 @@ Moments batch_means(std::span<const double> values, std::size_t length);
 // Rank correlations of values that stand further apart than neighbours. They find chains that were
 // written step by step, one value of each in turn. Equal values are ranked in an order drawn by
 // their places. For lag k = first ... K,
-//   z_k = (r_k + 1 / n) n / sqrt(n - k),   K = min(n / 4, 1000, 2e8 / n).
+//   z_k = (r_k + 1 / n) n / sqrt(n - k),   K = min(last, n / 4, 1000, 2e8 / n).
 // Each z_k is near standard normal for independent values of any one law.
 struct LaggedCorrelation {
   std::size_t lag = 0;
@@ -57,7 +57,7 @@ struct LaggedCorrelation {
 
 // All of them; none if n < 8 or all values are equal. Time n K.
 std::vector<LaggedCorrelation> lagged_correlations(std::span<const double> values,
-                                                   std::size_t first = 2);
+                                                   std::size_t first = 2, std::size_t last = 1000);
 
 // Spearman's correlation of the midranks of values side by side; 0 if either are all equal. Of
 // independent samples its variance is 1 / (n - 1). The samples must have one size.
@@ -99,8 +99,8 @@ Gate lagged_gate(std::span<const double> values);
 // most, and amber below .01. A third stands there, red, if a run of values comes again (copies.h),
 // as from seeds that do. Below 8 values there are none.
 //
-// The first has the rank correlation r_k that is farthest from 0, over the lags k = 1 ... K of the
-// first 2048 values. The second has the largest `H / B`, over
+// The first has the rank correlation r_k that is farthest from 0: over the lags k = 1 ... 16 of all
+// values, and k = 17 ... K of the first 2048. The second has the largest `H / B`, over
 // `B = floor(n / L) >= 8` batches of `L = 8, 16, ...` neighbours. S_b is the sum of the ranks of
 // batch b, less their mean.
 //  `H = 12 / (L n (n + 1)) sum S_b^2`.
