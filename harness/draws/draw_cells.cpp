@@ -282,9 +282,8 @@ stats::PlaneDensity plane_density(const Sampler& sampler, std::size_t marginal,
   }
   const auto on_chart = [&](const Point& point) { return chart.coordinates(point); };
   std::array<std::vector<double>, 2> places;
-  for (const Point& point : densest_first(drawn, densities)) {
+  for (const Point& point : densest_first(drawn, densities))
     for (std::size_t i = 0; i < 2; ++i) places[i].push_back(on_chart(point)[i]);
-  }
   return {.x = chart.first,
           .y = chart.second,
           .values = OnChart(chart, std::move(densities)),
@@ -355,9 +354,8 @@ DrawCells::DrawCells(const Sampler& sampler, std::vector<stats::HalvedCells> of_
     begin_.push_back(lobes_end_);
     lobes_end_ += cells.size();
   }
-  for (int lobe = 0; lobe < sampler.lobes(); ++lobe) {
+  for (int lobe = 0; lobe < sampler.lobes(); ++lobe)
     if (sampler.point_mass(lobe) != 0) point_masses_.push_back(lobe);
-  }
 }
 
 std::size_t DrawCells::index(const SamplerDraw& draw) const {

@@ -296,18 +296,30 @@ std::optional<ConstantVerdict> judge_constant(const Seen& seen, const Regions& r
                                      range_advice(seen.question))};
 }
 
-stats::Gate skewness_gate(const Seen& seen, double x) {
-  if (seen.data.size() == 1) return stats::skewness_gate(seen.moments(0), x);
-  return stats::skewness_gate(seen.moments(0), seen.moments(1), seen.question.factor, x);
+/// The moments whose skewness counts: those of the larger sample, the pilot's or the test's own.
+Moments shape_of(const TestOutcome& test, const Seen& seen, std::size_t subject) {
+  const Moments& own = seen.moments(subject);
+  const double averaged = seen.question.subjects[subject].averaged(test.plan.primaries[subject]);
+  const auto pilot = test.plan.pilots.find({subject, seen.channel});
+  const bool is_larger =
+      pilot != test.plan.pilots.end() &&
+      static_cast<double>(pilot->second.count) > averaged * static_cast<double>(own.count);
+  return is_larger ? stats::moments_of_means(pilot->second, averaged, own.count) : own;
 }
 
-stats::Gate residual_gate(const Seen& seen, double x) {
+stats::Gate skewness_gate(const TestOutcome& test, const Seen& seen, double critical) {
+  const bool corrects = test.plan.method.is.corrects_skewness;
+  const Moments x = shape_of(test, seen, 0);
   if (seen.data.size() == 2) {
-    return stats::residual_skewness_gate(seen.moments(0), seen.moments(1), seen.question.factor, x);
+    const Moments y = shape_of(test, seen, 1);
+    const double factor = seen.question.factor;
+    return corrects ? stats::residual_skewness_gate(x, y, factor, critical)
+                    : stats::skewness_gate(x, y, factor, critical);
   }
+  if (!corrects) return stats::skewness_gate(x, critical);
   const Constant& reference = seen.reference();
   return stats::residual_skewness_gate(
-      seen.moments(0), {reference.value + seen.question.offset, reference.standard_error}, x);
+      x, {reference.value + seen.question.offset, reference.standard_error}, critical);
 }
 
 std::vector<Method> methods_of_means() {
@@ -417,6 +429,7 @@ class MeanTheta : public Theta {
       const stats::Gate gate = stats::near_normal_gate(known.pilot.moments, known.averaged);
       near_normal = near_normal && gate.state == GateState::green;
       note(plan, known, gate);
+      if (!known.rows) plan.pilots[{known.subject, known.channel}] = known.pilot.moments;
     }
     if (!question.test->method) {
       if (!channels.empty() && are_two_valued(test, channels)) {
@@ -537,11 +550,9 @@ class MeanTheta : public Theta {
 
   std::vector<Gate> gates(const TestOutcome& outcome, const Seen& seen, double x) const override {
     std::vector<Gate> gates;
-    const MethodTraits& method = outcome.plan.method.is;
     const std::string name = channel_suffix(seen.question, seen.channel);
-    if (method.exact) return gates;
-    gates.push_back(
-        gate_of(method.corrects_skewness ? residual_gate(seen, x) : skewness_gate(seen, x), name));
+    if (outcome.plan.method.is.exact) return gates;
+    gates.push_back(gate_of(skewness_gate(outcome, seen, x), name));
     for (std::size_t subject = 0; subject < seen.data.size(); ++subject) {
       const Moments& moments = seen.moments(subject);
       // Two values cannot show an outlier.

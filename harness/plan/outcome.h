@@ -56,7 +56,9 @@ struct Plan {
   /// Factors on the variance of the mean of rows, by subject and channel.
   std::map<std::pair<std::size_t, std::size_t>, double> row_allowances = {};
   std::vector<std::uint64_t> primaries = {};  ///< One a subject.
-  stats::LookSchedule looks = {};             ///< Sizes are the most that any subject takes.
+  /// What pilots show of a drawn channel's values, by subject and channel.
+  std::map<std::pair<std::size_t, std::size_t>, stats::Moments> pilots = {};
+  stats::LookSchedule looks = {};  ///< Sizes are the most that any subject takes.
   /// Larger sizes that the last look is put off to while no look is sound. More observations must
   /// mend the red gates. It is the only look then.
   std::vector<std::uint64_t> postponed = {};
