@@ -1,7 +1,7 @@
 #pragma once
 
-#include <algorithm>
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -31,15 +31,13 @@ struct Difference {
 };
 /// The first difference, if any.
 inline std::optional<Difference> difference(const Identity& ours, const Identity& theirs) {
-  const auto value = [](const Identity& identity, const std::string& name) {
-    const auto found = std::ranges::find(identity, name, &Identity::value_type::first);
-    return found == identity.end() ? "none" : found->second;
-  };
-  if (ours == theirs) return std::nullopt;
+  std::map<std::string, std::string> here(ours.begin(), ours.end());
+  std::map<std::string, std::string> there(theirs.begin(), theirs.end());
   for (const Identity& identity : {ours, theirs}) {
     for (const auto& [name, unused] : identity) {
-      Difference found{name, value(ours, name), value(theirs, name)};
-      if (found.ours != found.theirs) return found;
+      const std::string& our = here.emplace(name, "none").first->second;
+      const std::string& their = there.emplace(name, "none").first->second;
+      if (our != their) return Difference{name, our, their};
     }
   }
   return std::nullopt;

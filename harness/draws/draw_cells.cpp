@@ -361,9 +361,8 @@ DrawCells::DrawCells(const Sampler& sampler, std::vector<stats::HalvedCells> of_
 std::size_t DrawCells::index(const SamplerDraw& draw) const {
   if (!draw.valid) return size() - 1;
   const auto point_mass = std::ranges::find(point_masses_, draw.lobe);
-  if (point_mass != point_masses_.end()) {
+  if (point_mass != point_masses_.end())
     return lobes_end_ + static_cast<std::size_t>(point_mass - point_masses_.begin());
-  }
   const auto lobe = static_cast<std::size_t>(draw.lobe);
   if (sampler_.domain() == Domain::interval) {
     return begin_[lobe] + of_lobes_[lobe].index(draw.point[0], 0);
@@ -390,9 +389,8 @@ stats::PlaneCell DrawCells::sides(std::size_t cell) const {
 
 std::string DrawCells::describe(std::size_t cell) const {
   if (cell == size() - 1) return "the draws without a point";
-  if (cell >= lobes_end_) {
+  if (cell >= lobes_end_)
     return fmt::format("the points of lobe {}", point_masses_[cell - lobes_end_]);
-  }
   const std::vector<Marginal> coordinates = cell_coordinates(sampler_);
   const stats::PlaneCell where = sides(cell);
   std::string text = range_text(coordinates[0].name, where.x);
@@ -418,9 +416,8 @@ std::vector<Marginal> cell_coordinates(const Sampler& sampler) {
 SamplerDraw sound(const NamedSampler& named, SamplerDraw draw) {
   const Sampler& sampler = *named.sampler;
   const int lobes = sampler.lobes();
-  if (draw.lobe < 0 || draw.lobe >= lobes) {
+  if (draw.lobe < 0 || draw.lobe >= lobes)
     refuse_draw(named, fmt::format("from lobe {}, and declares {}", draw.lobe, lobes));
-  }
   if (!draw.valid) return draw;
   const Point drawn = draw.point;
   const auto& [x, y, z] = drawn;

@@ -137,9 +137,8 @@ double farther(double one, double other) { return std::isnan(one) || one > other
 /// give 0. It is NaN if one of the numbers is NaN.
 double difference_of(const AskedDraw& asked) {
   const SamplerDraw& draw = asked.draw;
-  if (!asked.density) {
+  if (!asked.density)
     return draw.valid || draw.weight == 0 ? 0 : std::numeric_limits<double>::infinity();
-  }
   return farther(relative_difference(draw.density, *asked.density),
                  relative_difference(draw.weight * *asked.density, asked.evaluation));
 }
@@ -228,9 +227,8 @@ const std::vector<Point>& SamplerSetup::drawn() const {
   try {
     for (std::span<const Stream> rest = streams; !rest.empty();) {
       const std::vector<SamplerDraw> draws = draws_of(sampler(), rest);
-      for (const SamplerDraw& draw : draws) {
+      for (const SamplerDraw& draw : draws)
         if (has_density(sampler(), draw)) drawn_->push_back(sound(named_, draw).point);
-      }
       rest = rest.subspan(draws.size());
     }
   } catch (const std::exception&) {
