@@ -70,7 +70,7 @@ std::string found_in_image(const Image& image) {
     if (size.low.value_or(0) >= 0) std::erase(interval, '+');
     return fmt::format("{} is {} too {}{}{}", winner.place, size_text(*size.estimate, size),
                        dark ? "dark" : "bright", interval,
-                       winner.others.empty() ? "" : "; there " + winner.others);
+                       winner.others.empty() ? "" : ", weighted by noise; there " + winner.others);
   }
   if (winner.statistic == "alternating") return "the whole image differs with alternating signs";
   if (winner.statistic != "window") return fmt::format("{}: {}", winner.place, winner.statistic);
