@@ -245,7 +245,6 @@ class OnChart {
   std::vector<double> jacobians_;
 };
 
-/// Points that a sampler draws show the quadrature where its density has peaks.
 std::vector<Point> densest_first(std::span<const Point> drawn, const Densities& densities) {
   std::vector<double> values(drawn.size());
   write_all(densities, drawn, values);
@@ -255,6 +254,7 @@ std::vector<Point> densest_first(std::span<const Point> drawn, const Densities& 
   return mapped(order, [&](std::size_t i) { return drawn[i]; });
 }
 
+/// Points that a sampler draws show the quadrature where its density has peaks.
 stats::LineDensity line_density(const Sampler& sampler, std::span<const Point> drawn,
                                 Densities densities) {
   const std::vector<double> places =

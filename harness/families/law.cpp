@@ -61,9 +61,10 @@ std::string worst_of(const stats::ChiSquareFit& fit, const DensityCells& density
   const bool of_integral = worst->members.back() + 1 == density.cells.size();
   return text + fmt::format("farthest off in {}, {} draws where {:.4g} are expected{}",
                             pool_text(worst->members, describe), worst->observed, worst->expected,
-                            of_integral ? fmt::format(", as the density integrates to {:.4g}",
-                                                      density.mass.total)
-                                        : "");
+                            of_integral
+                                ? fmt::format(", as the density lacks {:.2g} of its integral",
+                                              density.missing())
+                                : "");
 }
 
 Evidence cells_against_density(const Seen& seen) {

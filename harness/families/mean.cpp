@@ -78,17 +78,6 @@ std::string lost_to_rounding(const Seen& seen) {
       seen.question.subjects[worst].estimator->name, seen.moments(worst).mean, rounding, error);
 }
 
-// So few values beyond half the way to an end may be none in the test.
-constexpr std::ptrdiff_t few_values = 32;
-
-/// True if the values beyond half the way from their mean to an end are few: there may be more.
-bool hides(std::span<const double> values, double mean, double end) {
-  const double half = mean + (end - mean) / 2;
-  return std::ranges::count_if(values, [&](double value) {
-           return end > mean ? value >= half : value <= half;
-         }) < few_values;
-}
-
 /// True if a claim on means rests on the range that its channels declare: bets are its method.
 /// Every end that a decision needs is finite, and a pilot saw few values in the outer half before
 /// one, or none that vary. Two means are bet on only if both are constant.
@@ -109,8 +98,9 @@ bool bets_on_range(const Question& question, const Pilots& pilots) {
       if (seen.moments.count == 0 || (seen.values.empty() && !constant)) return false;
       if (question.of_two() && !constant) return false;
       const double mean = seen.moments.mean;
-      hidden = hidden || constant || (needed.low && hides(seen.values, mean, range.low)) ||
-               (needed.high && hides(seen.values, mean, range.high));
+      hidden = hidden || constant ||
+               (needed.low && stats::may_hide_values(seen.values, mean, range.low)) ||
+               (needed.high && stats::may_hide_values(seen.values, mean, range.high));
     }
   }
   return hidden;
@@ -137,7 +127,7 @@ std::shared_ptr<const stats::ValueCells> planned_law(const PlannedChannel& plann
   const double count = law->count();
   const double missed = std::log(100.0) / static_cast<double>(pilot.moments.count);
   for (const double end : {planned.range.low, planned.range.high}) {
-    if (!std::isfinite(end) || !hides(pilot.values, mean, end)) continue;
+    if (!std::isfinite(end) || !stats::may_hide_values(pilot.values, mean, end)) continue;
     const double worth = distance_of(planned.regions) * planned.unit / 2 / std::abs(end - mean);
     if (worth > 0) law->add(end, count * std::min(missed, worth));
   }

@@ -237,6 +237,9 @@ class Ranks::Window {
 
   static std::size_t bytes_of(const Pool::Block& block) {
     std::size_t bytes = block.whole.channels.size() * sizeof(ChannelSummary);
+    for (const auto& [channel, details] : block.whole.detailed)
+      bytes += 8 * (details.cells.size() + details.histogram.counts.size());
+    bytes *= 1 + block.partial.size();
     const auto add = [&](const auto& lists) {
       for (const auto& list : lists) bytes += list.size() * sizeof list[0];
     };

@@ -309,18 +309,27 @@ bool passes_without_fit(const TestOutcome& outcome) {
          outcome.plan.regions[0].has_forbidden() && !red_gates(outcome.gates).empty();
 }
 
-/// Says why the test passes by not failing, which says nothing: it finds no theta that is possible,
-/// or excludes none on the sides that the claim bounds. Other intervals have ends, and cost time.
+/// Says why the test passes by not failing, which says nothing: it finds no error that is possible,
+/// or its interval excludes none. "" if it could have failed, or shows the claim.
 std::string cannot_fail(const TestOutcome& outcome) {
   for (ChannelOutcome channel : outcome.channels) {
-    if (channel.finds_nothing) return "possible mean";
-    if (!outcome.question.is().may_be_unbounded) continue;
+    // Other intervals have ends, and cost time.
+    if (!channel.finds_nothing && !outcome.question.is().may_be_unbounded) continue;
     const Regions& regions = channel.regions;
     channel.effect = effect_of(outcome, channel);
-    std::string what = outcome.question.theta->not_excluded(channel);
-    const bool by_large = regions.bounds_above() && channel.effect.low;
-    const bool by_small = regions.bounds_below() && channel.effect.high;
-    if (!what.empty() && !by_large && !by_small) return what;
+    const auto& [low, high] = std::pair(channel.effect.low, channel.effect.high);
+    if (channel.finds_nothing) {
+      const stats::Range claimed = regions.claimed();
+      const bool is_shown =
+          low.value_or(-HUGE_VAL) >= claimed.low && high.value_or(HUGE_VAL) <= claimed.high;
+      if (is_shown) continue;
+      return fmt::format("{} observations are too few to find any error that the range allows",
+                         outcome.secondaries());
+    }
+    const std::string what = outcome.question.theta->not_excluded(channel);
+    const bool by_large = regions.bounds_above() && low;
+    const bool by_small = regions.bounds_below() && high;
+    if (!what.empty() && !by_large && !by_small) return excludes_no(what);
   }
   return "";
 }
@@ -345,8 +354,9 @@ void conclude(TestOutcome& outcome, const std::vector<ConstantVerdict>& constant
   settle(outcome,
          decisions.empty() ? Verdict::pass : decide(decisions, outcome.plan.regions[0], beta), {});
   if (outcome.verdict == Verdict::pass && !outcome.plan.regions[0].has_forbidden()) {
-    if (const std::string what = cannot_fail(outcome); !what.empty()) {
-      settle(outcome, Verdict::inconclusive, excludes_no(what, outcome));
+    if (const std::string why = cannot_fail(outcome); !why.empty()) {
+      settle(outcome, Verdict::inconclusive,
+             Reason::advising(why + ": ", outcome.question.theta->how_to_exclude()));
     }
   }
   if (passes_without_fit(outcome)) settle(outcome, Verdict::invalid, red_gates(outcome.gates));

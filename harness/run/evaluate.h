@@ -55,8 +55,8 @@ std::string first_contradiction(const DrawnTest& test);
 /// what could be missed or how many more samples would decide.
 Reason narrate(const TestOutcome& outcome);
 
-/// Says that these observations exclude no `what` ("exponent"), and what to do.
-Reason excludes_no(const std::string& what, const TestOutcome& outcome);
+/// Says that these observations exclude no `what` ("exponent").
+std::string excludes_no(const std::string& what);
 
 // ---- Images
 

@@ -95,7 +95,8 @@ std::string passed_alarm(const TestOutcome& outcome, const ChannelOutcome& chann
   if (!channel.regions.has_forbidden()) {
     const std::string text = no_evidence(channel);
     if (const std::string all = outcome.question.theta->not_excluded(channel); !all.empty()) {
-      return fmt::format("{}; but {}", text, excludes_no(all, outcome).text);
+      return fmt::format("{}; but {}: {}", text, excludes_no(all),
+                         outcome.question.theta->how_to_exclude());
     }
     if (channel.detectable) {
       // Other cells see the same difference in a few pixels, or of both signs, from other sizes on.
@@ -276,9 +277,8 @@ Reason undecided(const TestOutcome& outcome, const ChannelOutcome& channel) {
 
 }  // namespace
 
-Reason excludes_no(const std::string& what, const TestOutcome& outcome) {
-  return Reason::advising(fmt::format("these observations rule out no {} at all: ", what),
-                          outcome.question.theta->how_to_exclude());
+std::string excludes_no(const std::string& what) {
+  return fmt::format("these observations rule out no {} at all", what);
 }
 
 Reason narrate(const TestOutcome& outcome) {

@@ -33,7 +33,8 @@ Checkpoint::Checkpoint(std::string file, std::chrono::duration<double> pause, Id
   if (is_resumed) read();
   open_kept(is_resumed);
   write();
-  due_ = Clock::now() + pause_;
+  soonest_ = Clock::now();
+  due_ = soonest_ + pause_;
 }
 
 void Checkpoint::read() {
@@ -99,7 +100,8 @@ bool Checkpoint::try_to_write() {
     say_beside_progress(error.what());
   }
   const Clock::time_point end = Clock::now();
-  due_ = end + std::max(pause_, pauses_a_write * (end - start));
+  soonest_ = end + pauses_a_write * (end - start);
+  due_ = std::max(soonest_, end + pause_);
   return written;
 }
 
@@ -147,7 +149,9 @@ void Checkpoint::draw(Round& round) {
     if (Clock::now() >= due_) try_to_write();
   });
   inner_->draw(round);
-  if (interrupted() && try_to_write()) {
+  if (!interrupted()) {
+    if (Clock::now() >= soonest_) try_to_write();
+  } else if (try_to_write()) {
     say_beside_progress(
         fmt::format("what was drawn is kept in {} and {}; the same command continues", file_,
                     kept_->path().string()));

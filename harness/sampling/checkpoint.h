@@ -27,8 +27,8 @@ struct WrittenPool {
   std::weak_ptr<Pool> pool = {};  ///< The pool lives as long as this run needs it.
 };
 
-/// Draws by another executor. Now and then, and when the user interrupts, it writes what pools have
-/// drawn. FILE holds their sums and is written whole or not at all.
+/// Draws by another executor. Now and then, at the end of a round and when the user interrupts, it
+/// writes what pools have drawn. FILE holds their sums and is written whole or not at all.
 /// FILE.kept holds what they keep, and only grows. Pools of the same set-ups and recipes begin
 /// there.
 ///
@@ -67,7 +67,8 @@ class Checkpoint final : public Executor {
   std::map<std::shared_ptr<const Setup>, std::string> names_;
   std::unique_ptr<GrowingFile> kept_;
   std::map<std::string, WrittenPool> pools_;  ///< By packed recipe.
-  Clock::time_point due_;                     ///< The next writing.
+  Clock::time_point soonest_;                 ///< Writing again may begin.
+  Clock::time_point due_;
 };
 
 }  // namespace assay::harness

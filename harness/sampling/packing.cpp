@@ -1,14 +1,11 @@
 #include "harness/sampling/packing.h"
 
-#include <functional>
-
 namespace assay::harness {
 namespace {
 
 constexpr std::string_view head = "assay 8\n";  // Another one for each change of what is packed.
 
-/// Processes of one identity have the same standard library.
-std::uint64_t checksum_of(std::string_view bytes) { return std::hash<std::string_view>()(bytes); }
+std::uint64_t checksum_of(std::string_view bytes) { return text_hash(bytes); }
 
 }  // namespace
 

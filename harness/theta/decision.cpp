@@ -5,12 +5,6 @@
 #include <limits>
 
 namespace assay::harness {
-namespace {
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
-
-}  // namespace
-
 double Regions::claimed_edge() const {
   if (within()) return detect.value_or(0);
   return proof() ? 0 : allow;
@@ -21,7 +15,7 @@ std::optional<double> Regions::forbidden_edge() const {
 }
 
 stats::Range Regions::between(double edge) const {
-  return {bounds_below() ? -edge : -infinity, bounds_above() ? edge : infinity};
+  return {bounds_below() ? -edge : -HUGE_VAL, bounds_above() ? edge : HUGE_VAL};
 }
 
 double log_p_claimed(const Evidence& evidence, const Regions& regions) {

@@ -1,7 +1,7 @@
 #pragma once
 
-// From the evidence about theta, the number that a claim is about, come p-values of the claimed and
-// of the forbidden region, and from these alone the verdict.
+// The evidence about theta, the number that a claim is about, gives p-values of the claimed and of
+// the forbidden region. From these alone comes the verdict.
 //
 //  `relation  claimed region C        forbidden region F
 //   ==        abs(theta) <= allow     abs(theta) >= detect     alarm

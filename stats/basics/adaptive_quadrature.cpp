@@ -329,14 +329,14 @@ std::vector<double> borders_of_peaks(std::span<const double> values, Span whole)
   for (std::size_t k = 0; k < strata; ++k) {
     const std::size_t first = k * values.size() / strata;
     const auto stratum = values.subspan(first, (k + 1) * values.size() / strata - first);
-    if (stratum.size() <= quantiles) return {};
+    if (stratum.size() <= quantiles) continue;
     const std::vector<double> some = quantiles_of(stratum);
     for (std::size_t i = 1; i + 1 < some.size(); ++i) {
       const double gap = std::max(some[i] - some[i - 1], some[i + 1] - some[i]);
       const auto after = std::ranges::lower_bound(near, some[i]);
       const bool is_near = (after != near.end() && *after - some[i] < 16 * gap) ||
                            (after != near.begin() && some[i] - after[-1] < 16 * gap);
-      if (gap < close && !is_near) near.insert(after, some[i]);
+      if (gap < close / 2 && !is_near) near.insert(after, some[i]);
     }
   }
   std::vector<double> borders = near;

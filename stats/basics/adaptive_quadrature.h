@@ -123,10 +123,12 @@ struct Panelling {
 std::vector<Span> cut(Span span, Span whole, const Panelling& panels);
 
 // Borders that show the peaks of a law to a quadrature, from values drawn of it, the densest first.
-// They are 33 of its quantiles, as far as neighbours are closer than 1 / 1024 of `whole`. So they
-// are of 32 strata of values of like density, where no border is near on the scale of their gaps. A
-// peak shows with some twelve of 4096 values. From the borders on gaps double, so that no part is
-// more than twice as long as its neighbour toward a peak. None for an even law.
+// They are 33 of its quantiles, as far as neighbours are closer than 1 / 1024 of `whole`. A peak of
+// few values stands out among those of like density: each of 32 strata of more than 32 values has
+// such quantiles, too. They count if both neighbours are closer than 1 / 2048, and no border is
+// within 16 times that distance. A peak shows with some twelve of 4096 values. From the borders on
+// gaps double, so that no part is more than twice as long as its neighbour toward a peak. None for
+// an even law.
 std::vector<double> borders_of_peaks(std::span<const double> values, Span whole);
 
 // The distribution function of a density as a table. Between two places it is the integral of the

@@ -99,8 +99,8 @@ Gate lagged_gate(std::span<const double> values);
 // most, and amber below .01. A third stands there, red, if a run of values comes again (copies.h),
 // as from seeds that do. Below 8 values there are none.
 //
-// The first has the rank correlation r_k that is farthest from 0: over the lags k = 1 ... 16 of all
-// values, and k = 17 ... K of the first 2048. The second has the largest `H / B`, over
+// The first has the rank correlation r_k that is farthest from 0. Lags k = 1 ... 16 are of all
+// values, k = 17 ... K of the first 2048. The second has the largest `H / B`, over
 // `B = floor(n / L) >= 8` batches of `L = 8, 16, ...` neighbours. S_b is the sum of the ranks of
 // batch b, less their mean.
 //  `H = 12 / (L n (n + 1)) sum S_b^2`.

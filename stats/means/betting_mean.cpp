@@ -214,4 +214,12 @@ BetGrowth bet_growth(const MovedLaw& law, std::size_t index) {
   return {mean, std::max(0.0, squares / law.values.count() - mean * mean)};
 }
 
+bool may_hide_values(std::span<const double> values, double mean, double end) {
+  constexpr std::ptrdiff_t few = 32;
+  const double half = mean + (end - mean) / 2;
+  return std::ranges::count_if(values, [&](double value) {
+           return end > mean ? value >= half : value <= half;
+         }) < few;
+}
+
 }  // namespace assay::stats

@@ -83,4 +83,8 @@ struct MovedLaw {
 };
 BetGrowth bet_growth(const MovedLaw& law, std::size_t index);
 
+// True if fewer than 32 values lie beyond half the way from their mean to an end of the range.
+// Another sample may then have none there.
+bool may_hide_values(std::span<const double> values, double mean, double end);
+
 }  // namespace assay::stats

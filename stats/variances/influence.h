@@ -66,6 +66,7 @@ Reference log_ratio_estimate(const LogRatio& ratio);
 TestResult log_ratio_test(const LogRatio& ratio, double theta);
 // The values that log_ratio_test does not reject; the estimate if it has no error.
 Interval log_ratio_interval(const LogRatio& ratio, double confidence);
+// The three together.
 Evidence log_ratio_evidence(const LogRatio& ratio);
 
 // Relative tolerance for equal quantities without spread. It is larger than the rounding of a

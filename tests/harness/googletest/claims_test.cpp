@@ -41,6 +41,15 @@ TEST(Claims, SayWhatWasFoundWhereTheyAreNot) {
   EXPECT_THAT(said, testing::ContainsRegex("\nreplay: [^\n]+( \\\\\n  *)?--gtest_filter=Claims"));
 }
 
+// A hundred observations have no value of -50 with probability .6. The pilot has some twenty.
+TEST(Claims, OfFewObservationsKnowTheSkewnessOfThePilot) {
+  const auto rare = [](Stream& random, std::span<double> out) {
+    out[0] = random.uniform() < .005 ? -50 : 1 + random.uniform();
+  };
+  EXPECT_THAT(message("mean(mine) == 1.2425", {secondary("mine", 1, rare), secondaries(100)}),
+              HasSubstr("inconclusive: the observations are so skewed"));
+}
+
 TEST(Claims, OfPrimariesMayTakeSeveralAnObservation) {
   EXPECT_CLAIM("variance(mine) == 0.080357142857142857", primary("mine", cube), detect("30%"));
 }

@@ -145,8 +145,8 @@ RC_GTEST_PROP(Packing, OfDamagedBytesUnderARightChecksumDoesNotCrash, ()) {
   std::string bytes(unframed(blocks_elsewhere(recipe, odd()).front()));
   const std::size_t at = damage(bytes);
   for (const std::string& frame : {framed(bytes), framed(bytes.substr(0, at))}) {
-    const std::string refusal = thrown<Unpackable>([&] { unpacked(frame); });
-    RC_ASSERT(refusal.size() > 5);
+    // Anything else that is thrown fails the property.
+    thrown<Unpackable>([&] { unpacked(frame); });
   }
 }
 

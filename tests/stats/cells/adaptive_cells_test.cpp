@@ -214,6 +214,16 @@ TEST(AdaptiveCells, APeakOfFewDrawsStandsOutAmongThoseOfItsDensity) {
   }
 }
 
+// Strata of 900 values have too few.
+TEST(AdaptiveCells, APeakOfHalfOfAFewHundredDrawsHasBorders) {
+  Philox random(33);
+  std::vector<double> values;
+  for (int i = 0; i < 450; ++i) values.push_back(.613 + 1e-5 * random.normal());
+  for (int i = 0; i < 450; ++i) values.push_back(random.uniform());
+  const std::vector<double> borders = borders_of_peaks(values, {0, 1});
+  EXPECT_GE(std::ranges::count_if(borders, [](double x) { return std::abs(x - .613) < 3e-5; }), 10);
+}
+
 TEST(AdaptiveCells, WithoutEvaluationsACellStaysWhole) {
   std::uint64_t evaluations = 0;
   const auto counted = [&](double x, double y) {

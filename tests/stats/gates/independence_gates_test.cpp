@@ -147,6 +147,7 @@ TEST(IndependenceGates, OfDrawsSeeMovingAveragesChainsAndSharedOffsets) {
     EXPECT_EQ(worst_of_draws(sharing(1000, 8, 1)), GateState::red);
     // The lags of neighbours have a correlation of .06 here. Batches of 256 vary 17 times too much.
     EXPECT_TRUE(is_red(drawn_order_gates(sharing(16384, 256, .25))[1]));
+    EXPECT_TRUE(is_red(drawn_order_gates(autoregressive(.1, 16384, random))[0]));
   }
 }
 
