@@ -129,23 +129,33 @@ Moments batch_means(std::span<const double> values, std::size_t length) {
   return means;
 }
 
-std::vector<LaggedCorrelation> lagged_correlations(std::span<const double> values,
-                                                   std::size_t first, std::size_t last) {
-  const std::size_t n = values.size();
-  const bool constant =
-      std::ranges::adjacent_find(values, std::ranges::not_equal_to{}) == values.end();
-  if (n < 8 || constant) return {};
-  const std::vector<double> ranks = centred_ranks(values);
+namespace {
+
+bool are_equal(std::span<const double> values) {
+  return std::ranges::adjacent_find(values, std::ranges::not_equal_to{}) == values.end();
+}
+
+std::vector<LaggedCorrelation> correlations_of_ranks(std::span<const double> ranks,
+                                                     std::size_t first, std::size_t last) {
+  const std::size_t n = ranks.size();
   const double squares = sum_of_products(ranks, ranks);
   const std::size_t farthest = std::min({last, n / 4, most_lags, most_products / n});
   const double count = static_cast<double>(n);
   std::vector<LaggedCorrelation> all;
   for (std::size_t lag = first; lag <= farthest; ++lag) {
-    const double r = sum_of_products(std::span(ranks).subspan(lag), ranks) / squares;
+    const double r = sum_of_products(ranks.subspan(lag), ranks) / squares;
     const double z = (r + 1 / count) * count / std::sqrt(count - static_cast<double>(lag));
     all.push_back({.lag = lag, .correlation = r, .z = z});
   }
   return all;
+}
+
+}  // namespace
+
+std::vector<LaggedCorrelation> lagged_correlations(std::span<const double> values,
+                                                   std::size_t first, std::size_t last) {
+  if (values.size() < 8 || are_equal(values)) return {};
+  return correlations_of_ranks(centred_ranks(values), first, last);
 }
 
 double rank_correlation(std::span<const double> x, std::span<const double> y) {
@@ -280,18 +290,17 @@ double rank_batch_statistic(std::span<const double> ranks, std::size_t length) {
   return 12 * sum / (static_cast<double>(length) * n * (n + 1));
 }
 
-Gate gate_of_rank_batches(std::span<const double> values) {
+Gate gate_of_rank_batches(std::span<const double> ranks) {
   Gate gate{.name = "variance of batch ranks of drawn observations", .value = 1, .low = 1};
   std::vector<std::size_t> lengths;
-  for (std::size_t length = shortest_rank_batch; length * fewest_rank_batches <= values.size();
+  for (std::size_t length = shortest_rank_batch; length * fewest_rank_batches <= ranks.size();
        length *= 2) {
     lengths.push_back(length);
   }
-  const std::vector<double> ranks = centred_ranks(values);
   const double tests = static_cast<double>(lengths.size());
   double least = 0;
   for (const std::size_t length : lengths) {
-    const auto batches = static_cast<double>(values.size() / length);
+    const auto batches = static_cast<double>(ranks.size() / length);
     const double statistic = rank_batch_statistic(ranks, length);
     const double log_p = chi_square_tails(statistic, batches).upper + std::log(tests);
     if (log_p >= least) continue;
@@ -338,12 +347,14 @@ Gate lagged_gate(std::span<const double> values) {
 
 std::vector<Gate> drawn_order_gates(std::span<const double> values) {
   if (values.size() < 8) return {};
-  std::vector<LaggedCorrelation> lags = lagged_correlations(values, 1, most_short);
+  const std::vector<double> ranks = centred_ranks(values);
+  std::vector<LaggedCorrelation> lags;
+  if (!are_equal(values)) lags = correlations_of_ranks(ranks, 1, most_short);
   const auto first = values.first(std::min(values.size(), most_lagged));
   std::ranges::copy(lagged_correlations(first, most_short + 1), std::back_inserter(lags));
   std::vector<Gate> gates{
       gate_of_lags(lags, "rank correlation of drawn observations", false_red_of_draws),
-      gate_of_rank_batches(values)};
+      gate_of_rank_batches(ranks)};
   if (const auto again = repeated_run(values)) {
     const auto length = static_cast<double>(again->length);
     gates.push_back(

@@ -108,12 +108,12 @@ std::optional<LookSchedule> growing_looks(
   const std::size_t all =
       geometric_sizes({.first = looks.first, .last = looks.needed}, growth).size();
   for (std::size_t count = std::min(unknown ? 10 : looks.count, all); count > 1; --count) {
-    const LookSchedule trial =
-        schedule_looks(sizes_up_to(looks.needed, count), looks.law, looks.errors);
+    LookSchedule trial = schedule_looks(sizes_up_to(looks.needed, count), looks.law, looks.errors);
     const std::uint64_t last =
         std::min(looks.most, std::max(looks.least, size(trial.alpha.back(), trial.beta.back())));
     if (last > dearest * looks.needed) continue;
     if (last <= looks.first) return one_look(last, looks.errors.alpha, looks.errors.beta);
+    if (last == looks.needed) return trial;
     return schedule_looks(sizes_up_to(last, count), looks.law, looks.errors);
   }
   return std::nullopt;
