@@ -228,7 +228,9 @@ class FineTiles {
     std::size_t half;
     std::size_t side;
   };
-  static constexpr double large = 2;  // In units of the light of the block.
+  // A deviation is large beyond this many times the light of the block, or the neighbours' spread.
+  static constexpr double most_light = 2;
+  static constexpr double most_spreads = 5;
 
   struct RareOfElement {
     double largest = 0;
@@ -293,7 +295,7 @@ class FineTiles {
     const Half& own = cells_.half[part.half];
     const double* const mean = own.mean[part.side].data();
     const double* const weights = cells_.half[1 - part.half].weight.data();
-    start_part(tile, weights);
+    start_part(tile, weights, static_cast<double>(stack.images.size()) / halves);
     Elements& all = elements_;
     std::size_t count = 0;
     for (std::size_t r = part.half; r < stack.images.size(); r += halves) {
@@ -320,11 +322,13 @@ class FineTiles {
     finish_elements(tile, stack, part, static_cast<double>(count));
   }
 
-  // Deviations beyond twice the light of the block are large.
-  void start_part(const Tile& tile, const double* weights) {
+  // A weight is 1 / the error that the neighbours' noise gives the mean of so many values.
+  void start_part(const Tile& tile, const double* weights, double count) {
     elements_.start_part(Tile::rows * tile.stride());
     for_each_element(tile, [&](std::size_t i, std::size_t element, auto...) {
-      elements_.limit[i] = large * elements_.light[i] * weights[element - cells_.half[0].first];
+      const double weight = weights[element - cells_.half[0].first];
+      elements_.limit[i] =
+          std::min(most_light * elements_.light[i] * weight, most_spreads * std::sqrt(count));
     });
   }
 
@@ -380,7 +384,7 @@ class FineTiles {
       powers.count += 1;
       powers.squares += deviation * deviation;
       powers.cubes += deviation * deviation * deviation;
-      if (std::abs(deviation) > large * elements_.light[y * tile.stride() + i]) {
+      if (std::abs(deviation) > most_light * elements_.light[y * tile.stride() + i]) {
         note_large(tile, y, part, i, deviation);
       }
     }

@@ -92,28 +92,29 @@ void PooledNoise::merge(const PooledNoise& other) {
   }
 }
 
-PooledNoise::Moments PooledNoise::moments_of(Powers others, Pile Bin::*pile, int octave) const {
-  if (!(others.count > 0)) return {};
-  const double c = std::ldexp(1, octave);
+PooledNoise::Moments PooledNoise::moments_of(Powers others, Pile Bin::*pile, int octave,
+                                             Signs signs) const {
+  if (!(common_.count > 0)) return {};
+  const float c = std::ldexp(1.0F, octave);
   for (std::size_t d = 0; d < tails_.size(); ++d) {
+    if (signs == (d == 0 ? Signs::downward : Signs::upward)) continue;
     for (const Bin& bin : tails_[d]) {
       const auto& [count, sum] = bin.*pile;
       if (count == 0) continue;
-      const double x = std::min(c, static_cast<double>(sum) / count);
-      const Powers powers = stats::powers_of(d == 0 ? x : -x, count);
+      const Powers powers = powers_of(d, {count, std::min(c * count, sum)});
       others.squares += powers.squares;
       others.cubes += powers.cubes;
     }
   }
-  return {.second = others.squares / others.count, .third = others.cubes / others.count};
+  return {.second = others.squares / common_.count, .third = others.cubes / common_.count};
 }
 
 PooledNoise::Moments PooledNoise::cut_off(int octave) const {
-  return moments_of(common_, &Bin::large, octave);
+  return moments_of(common_, &Bin::large, octave, Signs::both);
 }
 
-PooledNoise::Moments PooledNoise::rare_cut_off(int octave) const {
-  return moments_of({.count = common_.count}, &Bin::rare, octave);
+PooledNoise::Moments PooledNoise::rare_cut_off(int octave, Signs signs) const {
+  return moments_of({}, &Bin::rare, octave, signs);
 }
 
 int PooledNoise::bottom() const {
@@ -264,6 +265,9 @@ std::optional<double> NoisePyramid::growth_toward(const CellNoise& cell, const A
                                                   double toward) const {
   constexpr double fewest = 2;  // One giant tells no size of the rare.
   if (of_one_law(near, toward)) return std::nullopt;
+  using Signs = PooledNoise::Signs;
+  const Signs missed = toward > 0 ? Signs::upward : Signs::downward;
+  const Signs signs = replicates_[1] == 0 ? missed : Signs::both;
   double largest = 0;
   for (const auto& [sides, is_wide] : near.blocks) {
     const auto& [a, b] = sides;
@@ -279,7 +283,7 @@ std::optional<double> NoisePyramid::growth_toward(const CellNoise& cell, const A
     for (int octave = near.last; octave >= near.first; --octave) {
       beyond += (lacking(toward) == 0 ? a : b)->rare(octave).count;
       grow({a->cut_off(octave), b->cut_off(octave)});
-      if (beyond >= fewest) grow({a->rare_cut_off(octave), b->rare_cut_off(octave)});
+      if (beyond >= fewest) grow({a->rare_cut_off(octave, signs), b->rare_cut_off(octave, signs)});
     }
   }
   return largest;

@@ -45,8 +45,9 @@ class PooledNoise {
     double second = 0;
     double third = 0;
   };
+  enum class Signs { both, upward, downward };
   Moments cut_off(int octave) const;
-  Moments rare_cut_off(int octave) const;
+  Moments rare_cut_off(int octave, Signs signs = Signs::both) const;
   static constexpr int octaves = 16;
   static constexpr int no_octave = -100'000;  // top() without any.
   int top() const { return top_; }            // No large deviation is beyond +-2^top.
@@ -93,8 +94,8 @@ class PooledNoise {
   void raise(int top);
   // The powers of a pile's deviations, as if each were their mean.
   static Powers powers_of(std::size_t direction, const Pile& pile);
-  // The moments of piles cut off, and of other deviations.
-  Moments moments_of(Powers others, Pile Bin::*pile, int octave) const;
+  // The moments of piles of these signs cut off, and of other deviations.
+  Moments moments_of(Powers others, Pile Bin::*pile, int octave, Signs signs) const;
 
   Powers common_;  // Without the large, but for their count.
   double elements_ = 0;
@@ -144,8 +145,9 @@ class NoisePyramid {
   // sides have different laws in one of them. That is where one is noisier for its mean in too many
   // elements (sign test). It is also where the darker has too many rare values beyond an octave, or
   // far too few. A reference has a law of its own, and what is held against it may lack values of
-  // either sign. Skewness of the other side takes away from k3, as far as the cell has it: by the
-  // part of a wide block's noise that this side has in the cell.
+  // either sign: its rare ones of the other sign count as none. Skewness of the other side takes
+  // away from k3, as far as the cell has it: by the part of a wide block's noise that this side has
+  // in the cell.
   //
   // Between different laws a cell is no clearer than values allow that it never showed. They may be
   // as large as the noise of its neighbours.

@@ -47,6 +47,10 @@ TEST(PooledNoise, HasTheMomentsOfTheValuesCutOff) {
         EXPECT_THAT(second / squares, AllOf(Ge(8.0 / 9), Le(1 + 1e-6))) << octave;
         EXPECT_THAT(third / cubes, AllOf(Ge(0.72), Le(1 + 1e-6))) << octave;
       }
+      using enum PooledNoise::Signs;
+      EXPECT_EQ(noise.rare_cut_off(octave, unit > 0 ? downward : upward).third, 0);
+      EXPECT_EQ(noise.rare_cut_off(octave, unit > 0 ? upward : downward).third,
+                noise.rare_cut_off(octave).third);
     }
   }
 }

@@ -183,6 +183,26 @@ CALIBRATED(ImagePyramid, AnEdgeBeforeAConstantKeepsTheLevel, 854, 200, Shape::at
   return image_pyramid({a.view(), ImageReference{lit, means}}, {.constants_decide = false}).log_p;
 }
 
+// An object covers .08 of each pixel in a row, and of the next row all but .08. Many pixels never
+// show the rarer.
+CALIBRATED(ImagePyramid, ASilhouetteKeepsTheLevel, 864, 400, Shape::at_most_uniform) {
+  const auto covered = [](std::size_t e) {
+    const std::size_t row = e / lit.width;
+    if (row == 7) return 0.08;
+    if (row == 8) return 0.92;
+    return row < 7 ? 0.0 : 1.0;
+  };
+  const OwnedStack a = draw_stack(lit, 16, [&](std::size_t e) {
+    return random.uniform() < covered(e) ? 0.28 + 0.01 * random.normal()
+                                         : 0.78 + 0.003 * random.normal();
+  });
+  std::vector<double> means;
+  for (std::size_t e = 0; e < lit.elements(); ++e) {
+    means.push_back(static_cast<float>(0.78 - 0.5 * covered(e)));
+  }
+  return image_pyramid({a.view(), ImageReference{lit, means}}, {.constants_decide = false}).log_p;
+}
+
 CALIBRATED(ImagePyramid, UnequalNumbersOfOneLawKeepTheLevel, 852, tests::repetitions(500),
            Shape::at_most_uniform) {
   const Fireflies rare{.rate = 0.02, .share = 0.5};
