@@ -68,9 +68,10 @@ std::string found_in_image(const Image& image) {
     // The words have the sign.
     std::string interval = bracket(size);
     if (size.low.value_or(0) >= 0) std::erase(interval, '+');
+    const char* const weighted = winner.width * winner.height == 1 ? "" : ", weighted by noise";
     return fmt::format("{} is {} too {}{}{}", winner.place, size_text(*size.estimate, size),
                        dark ? "dark" : "bright", interval,
-                       winner.others.empty() ? "" : ", weighted by noise; there " + winner.others);
+                       winner.others.empty() ? "" : weighted + ("; there " + winner.others));
   }
   if (winner.statistic == "alternating") return "the whole image differs with alternating signs";
   if (winner.statistic != "window") return fmt::format("{}: {}", winner.place, winner.statistic);
