@@ -163,7 +163,7 @@ void check_command(const Parameters& parameters, const std::vector<std::string>&
   require(foreign::has_place(command, "{out}"), "lacks `{out}`, the file to write");
   for (const std::string& word : command) check_places(parameters, word);
   require(!foreign::program_path(command[0], parameters.folder()).empty(),
-          "names the program `" + command[0] + "`, which does not exist" +
+          "names the program `" + command[0] + "`, which does not exist or may not be run" +
               foreign::mend_of_program(command[0]));
 }
 

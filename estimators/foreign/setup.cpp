@@ -11,6 +11,7 @@
 
 #include "estimators/core/flush_denormals.h"
 #include "estimators/core/mapped.h"
+#include "estimators/core/quoting.h"
 #include "estimators/core/thread_seconds.h"
 #include "estimators/foreign/children.h"
 
@@ -414,7 +415,9 @@ std::shared_ptr<const Setup> setup_of(std::shared_ptr<Children> children) {
 }
 
 std::string mend_of_program(const std::string& program, std::errc why) {
-  if (why == std::errc::permission_denied) return "; give it the right: `chmod +x " + program + "`";
+  if (why == std::errc::permission_denied) {
+    return "; make it executable, in the suite's folder: `chmod +x " + shell_quoted(program) + "`";
+  }
   if (why == std::errc::executable_format_error) {
     return "; a script begins with `#!` and its interpreter, as `#!/usr/bin/env python3`";
   }

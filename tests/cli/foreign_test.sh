@@ -234,6 +234,7 @@ plugin: library, estimator: mien, file: other.so|bad.yaml:4:50: library: paramet
 plugin: library, file: other.so, parameters: {rate: 2}|has no parameter `rate`
 plugin: library, file: loud.so|the library printed `welcome`
 plugin: process, command: [no_such_program]|cannot be started: No such file or directory
+plugin: process, command: [./one.txt]|in the suite's folder: `chmod +x ./one.txt`
 plugin: process, command: python3 a.py|must be a list of texts: `[python3, a.py]`
 plugin: process, command: [sh, none.sh], timeout: 0|must be above 0
 plugin: command, command: [cp, one.txt, "{out}", "{seed}"], output: text, depends: [no.txt]|parameter `depends` cannot be used: there is no file `no.txt`
