@@ -316,10 +316,10 @@ EstimatorEntry parse_estimator_option(const std::string& text) {
   for (std::size_t i = 1; i < pieces.size(); ++i) {
     const auto sides = cut(pieces[i], '=');
     if (!sides) {
-      refuse(where,
-             "`{0}` is not key=value; a file is given as `file={0}`, a value with commas in "
-             "brackets or quotes",
-             pieces[i]);
+      refuse(
+          where,
+          "`{}` is not key=value, as `file=a.txt`; put a value with commas in brackets or quotes",
+          pieces[i]);
     }
     if (std::ranges::count(members, sides->first, &Value::Member::first) > 0) {
       refuse(where, "`{}` is given twice", sides->first);
