@@ -209,7 +209,7 @@ def test_parameters_come_from_the_command(program):
 @pytest.mark.parametrize("words, answer", [
     (["cuont=3"], "ValueError: there is no parameter `cuont=3`; the estimator's are: radius, count, sharp, name"),
     ([], "ValueError: the parameter `count` is missing: add `count=VALUE` to the command, "
-         "or give it a default value; no fixture serves"),
+         "or give it a default value; fixtures do not fill it"),
     (["count=3.5"], "ValueError: the parameter `count=3.5` is no int"),
     (["count=3", "sharp=maybe"], "ValueError: the parameter `sharp=maybe` is no bool")])
 def test_wrong_parameters_refuse(program, words, answer):

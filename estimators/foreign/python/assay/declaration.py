@@ -196,7 +196,7 @@ def parameters_of(function: Callable[..., typing.Any], words: Sequence[str]) -> 
     missing = [p.name for p in known.values() if p.default is p.empty and p.name not in values]
     if missing:
         raise ValueError(f"the parameter `{missing[0]}` is missing: add `{missing[0]}=VALUE` to the "
-                         "command, or give it a default value; no fixture serves")
+                         "command, or give it a default value; fixtures do not fill it")
     return values
 
 
