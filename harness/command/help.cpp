@@ -384,9 +384,8 @@ std::string man_page(const std::vector<CommandText>& commands) {
       version(), paragraph(purpose));
   for (const CommandText& command : commands) text += roff_section(command);
   text += ".SH EXIT STATUS\n";
-  const std::string_view all = carried_text("help/all.txt");
-  const std::string_view codes = all.substr(all.find("  0 "));
-  text += fmt::format(".in -6n\n.nf\n{}.fi\n.in\n", roff(std::string(codes)));
+  const std::string all(carried_text("help/all.txt"));
+  text += fmt::format(".in -6n\n.nf\n{}.fi\n.in\n", roff(all.substr(all.find("  0 "))));
   return text;
 }
 
