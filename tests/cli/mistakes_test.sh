@@ -85,6 +85,7 @@ TABLE
     images --candidate 'a*.exr' --reference 'b*.pfm'
   answers 2 'parameter `mask` is `large.pfm`: it has 10 x 4 pixels, and the pictures have 8 x 4' \
     images "${sides[@]}" --mask large.pfm
+  answers 2 'goes with `==`, not with `within`' images "${sides[@]}" --law --within 1%
   expect 0 images "${sides[@]}" --mask mask.pfm
   contains out '1 of 32 pixels are left'
   contains out 'what is wrong there stays hidden'
