@@ -253,8 +253,7 @@ constexpr const char* missing_by_chance =
 
 constexpr const char* mend_of_comma =
     ": write `.` for it, and no comma between thousands; if these are columns, name them in a "
-    "first "
-    "line";
+    "first line";
 constexpr std::string_view stream_keyword = "stream:";
 constexpr std::size_t longest_line = std::size_t{64} << 20;
 
@@ -438,9 +437,7 @@ class Reader {
     if (parsed.out_of_range) {
       refuse(field.column, text + " is beyond what a double can hold; write `inf` or 0 if meant");
     }
-    if (is_missing(field.text)) {
-      refuse(field.column, text + " is not a number" + missing_by_chance);
-    }
+    if (is_missing(field.text)) refuse(field.column, text + " is not a number" + missing_by_chance);
     refuse(field.column,
            text +
                " is not a number; a comment begins with `#`; names of columns stand in a first "
