@@ -286,6 +286,18 @@ for side, mean in ("a", 1), ("b", 2):
     "$source_folder/reports/record/record.schema.json" run.json || fail 'not its schema'
 }
 
+test_a_place_of_one_pixel_is_not_weighted() {
+  /usr/bin/python3 -c '
+import random, struct
+for side in "ab":
+    for i in range(20):
+        light = [random.Random(f"{side}{i}{k}").gauss(1, .1) for k in range(144)]
+        if side == "a": light[31] += .6; light[32] += .3
+        open(f"{side}{i}.pfm", "wb").write(b"PF\n8 6\n-1\n" + struct.pack("<144f", *light))'
+  expect 1 images --candidate 'a*.pfm' --reference 'b*.pfm'
+  contains out 'pixel x 2, y 4 of G is 66.4 % too bright (48.4 % to 84.4 %); there B differs by'
+}
+
 # The reference has noise of its own, which no place shows.
 test_a_pass_says_if_all_pixels_together_differ() {
   /usr/bin/python3 -c '
