@@ -35,8 +35,8 @@ inline std::optional<Difference> difference(const Identity& ours, const Identity
   std::map<std::string, std::string> there(theirs.begin(), theirs.end());
   for (const Identity& identity : {ours, theirs}) {
     for (const auto& [name, unused] : identity) {
-      const std::string& our = here.emplace(name, "none").first->second;
-      const std::string& their = there.emplace(name, "none").first->second;
+      const std::string& our = here.emplace(name, "missing").first->second;
+      const std::string& their = there.emplace(name, "missing").first->second;
       if (our != their) return Difference{name, our, their};
     }
   }

@@ -165,9 +165,9 @@ TEST(Ranks, OfAnotherRunAreRefusedByName) {
   EXPECT_THAT(refusal([&] {
                 run_in_ranks(kinds, {.ranks = 2, .identity_there = {{"the version", "0.0.1"}}});
               }),
-              HasSubstr(" is of another run: the version is 0.0.1 there and none here"));
+              HasSubstr(" is of another run: the version is 0.0.1 there and missing here"));
   EXPECT_THAT(refusal([&] { run_in_ranks(kinds, {.ranks = 2, .suite_there = process}); }),
-              HasSubstr("` is none there and prepared here"));
+              HasSubstr("` is missing there and prepared here"));
   EXPECT_THAT(refusal([&] { run_in_ranks(kinds, {.ranks = 2, .suite_there = "none.yaml"}); }),
               HasSubstr("cannot prepare the run: cannot read `none.yaml`"));
 }
