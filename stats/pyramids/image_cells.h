@@ -151,7 +151,8 @@ struct FineCells {
 struct FineFindings {
   CoarseImages coarse;
   NoisePyramid noise;
-  std::vector<std::vector<Candidates>> tiles;  // A group's candidates, in every tile.
+  std::vector<NoisePyramid::SquaresOfSides> squares;  // Of a tile, by channel.
+  std::vector<std::vector<Candidates>> tiles;         // A group's candidates, in every tile.
   ElementCounts counts;
   std::vector<UnseenElement> unseen = {};
   std::vector<float> weights;  // Every element's, averaged over the halves.

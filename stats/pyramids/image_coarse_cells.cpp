@@ -172,7 +172,7 @@ CellNoiseOfMean offer_coarse_cells(const CoarseImages& coarse, const Groups& gro
     candidate.finding.size = group.size;
     candidate.finding.window = groups[g].windows[i];
     candidate.finding.channel = channel;
-    candidate.noise.alternates = alternating && coarse.half[0].images[1].empty();
+    candidate.noise.alternates = alternating;
     if (alternating) candidate.finding.alternation = static_cast<Alternation>(i);
     const StudentValue value = own_value(candidate.noise);
     candidate.finding.z = t_to_z(value);

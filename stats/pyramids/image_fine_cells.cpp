@@ -219,11 +219,14 @@ class FineTiles {
     add_rare_elements(tile);
     offer_elements(tile);
     for (std::size_t k = 0; k < fine_squares.size(); ++k) offer_squares(tile, k);
-    found_.tiles[tile.y / Tile::rows * tiles_across(extent_) + tile.x / Tile::columns] =
-        std::move(candidates_);
+    found_.tiles[index_of(tile)] = std::move(candidates_);
   }
 
  private:
+  std::size_t index_of(const Tile& tile) const {
+    return tile.y / Tile::rows * tiles_across(extent_) + tile.x / Tile::columns;
+  }
+
   struct Part {
     std::size_t half;
     std::size_t side;
@@ -316,10 +319,27 @@ class FineTiles {
                add_squares(sums, moments_[k].squares.data() + y * tile.stride(), tile.size());
              });
     }
+    add_squares_of_sides(tile);
     for (WelchCells& moments : moments_) {
       moments.finish_part(part.half, part.side, static_cast<double>(count));
     }
     finish_elements(tile, stack, part, static_cast<double>(count));
+  }
+
+  void add_squares_of_sides(const Tile& tile) {
+    const std::size_t index = index_of(tile);
+    for (std::size_t c = 0; c < extent_.channels; ++c) {
+      NoisePyramid::SquaresOfSides& sums = found_.squares[index * extent_.channels + c];
+      const auto add = [&](std::size_t k, std::size_t side, const std::vector<double>& squares) {
+        for (std::size_t y = 0; y < tile.height(); y += side) {
+          for (std::size_t x = 0; x < tile.width(); x += side)
+            sums[k] += squares[y * tile.stride() + x * extent_.channels + c];
+        }
+      };
+      add(0, 1, elements_.squares);
+      for (std::size_t k = 0; k < fine_squares.size(); ++k)
+        add(k + 1, fine_squares[k].side, moments_[k].squares);
+    }
   }
 
   // A weight is 1 / the error that the neighbours' noise gives the mean of so many values.
@@ -825,9 +845,11 @@ void offer_fine_cells(const FineCells& cells, RowRange rows, FineFindings& found
 FineFindings empty_findings(const ImagePair& pair, std::span<double> z) {
   const ImageExtent& extent = pair.a.extent;
   const std::size_t down = (extent.height + Tile::rows - 1) / Tile::rows;
+  const std::size_t tiles = tiles_across(extent) * down;
   return {.coarse = empty_blocks(pair),
           .noise = {extent, {pair.a.images.size(), pair.b != nullptr ? pair.b->images.size() : 0}},
-          .tiles = std::vector<std::vector<Candidates>>(tiles_across(extent) * down),
+          .squares = std::vector<NoisePyramid::SquaresOfSides>(tiles * extent.channels),
+          .tiles = std::vector<std::vector<Candidates>>(tiles),
           .weights = std::vector<float>(extent.elements()),
           .z = z};
 }

@@ -1,6 +1,7 @@
 #include "stats/pyramids/image_noise.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <numbers>
@@ -16,11 +17,6 @@ double square(double x) { return x * x; }
 
 PooledNoise::Powers powers_of(double x, double count) {
   return {.count = 0, .squares = count * x * x, .cubes = count * x * x * x};
-}
-
-// A cell's own noise tells this growth for an effect of this sign.
-double own_growth(const CellNoise& cell, double sign) {
-  return (sign < 0 ? 1 : -1) * cell.third / (cell.variance[0] + cell.variance[1]);
 }
 
 }  // namespace
@@ -145,7 +141,7 @@ double PooledNoise::hidden_squares(double replicates) const {
 
 NoisePyramid::NoisePyramid(const ImageExtent& extent,
                            std::array<std::size_t, sides_of_pair> replicates)
-    : levels_(1) {
+    : levels_(1), squares_(extent.channels) {
   Level& level = levels_[0];
   level.width = (extent.width + block - 1) / block;
   level.height = (extent.height + block - 1) / block;
@@ -154,6 +150,18 @@ NoisePyramid::NoisePyramid(const ImageExtent& extent,
     replicates_[s] = static_cast<double>(replicates[s]);
     level.noise[s].resize(level.width * level.height * level.channels);
   }
+}
+
+void NoisePyramid::add_squares(std::size_t channel, const SquaresOfSides& squares) {
+  for (std::size_t k = 0; k < squares.size(); ++k) squares_[channel][k] += squares[k];
+}
+
+double NoisePyramid::together(const Rectangle& window, std::size_t channel) const {
+  const SquaresOfSides& squares = squares_[channel];
+  const auto doublings =
+      static_cast<std::size_t>(std::bit_width(std::max(window.width, window.height)) - 1);
+  const std::size_t k = std::min(doublings, squares.size() - 1);
+  return squares[0] > 0 ? std::max(1.0, squares[k] / squares[0]) : 1;
 }
 
 void NoisePyramid::build() {
@@ -183,7 +191,10 @@ NoisePyramid::Around NoisePyramid::around(const Rectangle& window, std::size_t c
   const std::uint32_t size = std::max(window.width, window.height);
   const std::size_t x = window.x + window.width / 2;
   const std::size_t y = window.y + window.height / 2;
-  Around found{.first = -PooledNoise::no_octave, .last = PooledNoise::no_octave};
+  Around found{.first = -PooledNoise::no_octave,
+               .last = PooledNoise::no_octave,
+               .together = together(window, channel),
+               .together_of_block = together({0, 0, block, block}, channel)};
   for (const Level& level : levels_) {
     if (level.side < sides_around * size && &level != &levels_.back()) continue;
     const std::size_t block_of = level.index(x / level.side, y / level.side, channel);
@@ -226,7 +237,7 @@ bool NoisePyramid::of_one_law(const Around& near, double toward) const {
         count += more_rare.count;
         squares += more_rare.squares;
         rates[s] = root(count) * std::sqrt(inverse(s));
-        variance += (count > 0 ? squares / count : 1) * inverse(s) / 4;
+        variance += (count > 0 ? squares / count : 1) * near.together_of_block * inverse(s) / 4;
       }
       const double errors = toward * (rates[0] - rates[1]) / std::sqrt(variance);
       if (errors > errors_of_rates || errors < -errors_of_signs) return false;
@@ -254,10 +265,13 @@ double NoisePyramid::growth(const std::array<PooledNoise::Moments, sides_of_pair
 std::optional<double> NoisePyramid::growth_of_blocks(const CellNoise& cell, double sign,
                                                      const Rectangle& window,
                                                      std::size_t channel) const {
-  const Around near = around(window, channel);
-  const double toward = cell.alternates || (sign < 0) != (cell.concentration < 0) ? 1 : -1;
+  Around near = around(window, channel);
+  if (cell.alternates) near.together = 1;
+  // Beside a reference missed light moves signs in turn either way.
+  const bool either_way = cell.alternates && replicates_[1] == 0;
+  const double toward = either_way || (sign < 0) != (cell.concentration < 0) ? 1 : -1;
   std::optional<double> largest = growth_toward(cell, near, toward);
-  if (largest) *largest *= std::abs(cell.concentration);
+  if (largest) *largest *= std::abs(cell.concentration) * near.together;
   return largest;
 }
 
@@ -274,7 +288,8 @@ std::optional<double> NoisePyramid::growth_toward(const CellNoise& cell, const A
     const auto grow = [&](const std::array<PooledNoise::Moments, sides_of_pair>& here) {
       std::array<double, sides_of_pair> parts{1, 1};
       for (std::size_t s = 0; is_wide && s < sides_of_pair; ++s) {
-        const double usual = here[s].second * inverse(s) * std::abs(cell.concentration);
+        const double usual =
+            here[s].second * inverse(s) * std::abs(cell.concentration) * near.together;
         if (usual > 0) parts[s] = std::min(1.0, cell.variance[s] / usual);
       }
       largest = std::max(largest, growth(here, toward, parts));
@@ -289,10 +304,16 @@ std::optional<double> NoisePyramid::growth_toward(const CellNoise& cell, const A
   return largest;
 }
 
+double NoisePyramid::own_growth(const CellNoise& cell, double sign, const Rectangle& window,
+                                std::size_t channel) const {
+  const double third = cell.third * square(together(window, channel));
+  return (sign < 0 ? 1 : -1) * third / (cell.variance[0] + cell.variance[1]);
+}
+
 double NoisePyramid::growth(const CellNoise& cell, double sign, const Rectangle& window,
                             std::size_t channel) const {
   return std::max(growth_of_blocks(cell, sign, window, channel).value_or(0),
-                  own_growth(cell, sign));
+                  own_growth(cell, sign, window, channel));
 }
 
 ImageEffect NoisePyramid::kept(const CellNoise& cell, const Rectangle& window,
@@ -301,12 +322,13 @@ ImageEffect NoisePyramid::kept(const CellNoise& cell, const Rectangle& window,
   const auto of_blocks = growth_of_blocks(cell, cell.effect, window, channel);
   const double ratio = replicates_[0] / replicates_[1];
   const double variance = of_blocks ? a + b : std::max(a + b, ratio * a + b / ratio);
-  const double growing = std::max(of_blocks.value_or(0), own_growth(cell, cell.effect));
+  const double growing =
+      std::max(of_blocks.value_or(0), own_growth(cell, cell.effect, window, channel));
   const ImageEffect effect{.estimate = cell.effect,
                            .standard_error = std::sqrt(variance + std::abs(cell.effect) * growing),
                            .degrees = cell.degrees};
   if (!of_blocks) return effect;
-  const double log_p = log_p_with_unseen(effect, cell.weights);
+  const double log_p = log_p_with_unseen(effect, cell.weights / together(window, channel));
   if (log_p <= log_p_two_sided(student_t_tails(effect.t(), effect.degrees))) return effect;
   const double errors =
       student_t_quantile({Tail::upper, log_p - std::numbers::ln2}, effect.degrees);

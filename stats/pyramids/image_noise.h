@@ -111,7 +111,7 @@ struct CellNoise {
   double degrees = 1;
   double third = 0;         // Third cumulant of the effect, of independent elements; 0 of few.
   double weights = 0;       // The mean over the halves of the weights' sum.
-  bool alternates = false;  // Signs in turn beside a reference: missed light moves it either way.
+  bool alternates = false;  // Signs in turn.
   // The sum of the squared weights over the square of the weights' sum, between two sides with the
   // signs in turn. It is the mean of this over the halves, as is a reference's squared error. Both
   // are exact where the halves' weights are in proportion, and else too large.
@@ -130,6 +130,10 @@ class NoisePyramid {
   PooledNoise& at(std::size_t side, std::size_t x, std::size_t y, std::size_t channel) {
     return levels_[0].noise[side][levels_[0].index(x / block, y / block, channel)];
   }
+  // Sums over elements, and over the aligned squares of sides 2, 4 and 8, of their squared weighted
+  // deviations.
+  using SquaresOfSides = std::array<double, 4>;
+  void add_squares(std::size_t channel, const SquaresOfSides& squares);
   // To be called after the last element.
   void build();
 
@@ -148,6 +152,9 @@ class NoisePyramid {
   // either sign: its rare ones of the other sign count as none. Skewness of the other side takes
   // away from k3, as far as the cell has it: by the part of a wide block's noise that this side has
   // in the cell.
+  //
+  // Neighbours' noise may move together, as where a filter spreads light. One rare value then moves
+  // f elements of a cell, by the variances of cells over those of their elements (`together`).
   //
   // Between different laws a cell is no clearer than values allow that it never showed. They may be
   // as large as the noise of its neighbours.
@@ -180,8 +187,12 @@ class NoisePyramid {
     std::vector<Block> blocks;
     int first = 0;
     int last = 0;
+    double together = 1;           // In the cell.
+    double together_of_block = 1;  // In a block of 8 x 8.
   };
   Around around(const Rectangle& window, std::size_t channel) const;
+  // The squares of a side over those of their elements, at least 1; for larger cells that of 8.
+  double together(const Rectangle& window, std::size_t channel) const;
   double inverse(std::size_t side) const;  // 1 / replicates_, 0 of a reference.
   // The side that may have missed values: the darker, or the one beside a reference.
   std::size_t lacking(double toward) const { return toward > 0 || replicates_[1] == 0 ? 0 : 1; }
@@ -197,11 +208,14 @@ class NoisePyramid {
   // sides are of one law.
   std::optional<double> growth_toward(const CellNoise& cell, const Around& near,
                                       double toward) const;
+  double own_growth(const CellNoise& cell, double sign, const Rectangle& window,
+                    std::size_t channel) const;
   std::optional<double> growth_of_blocks(const CellNoise& cell, double sign,
                                          const Rectangle& window, std::size_t channel) const;
 
   std::array<double, sides_of_pair> replicates_ = {};  // 0: no side, but a reference.
   std::vector<Level> levels_;
+  std::vector<SquaresOfSides> squares_;  // By channel.
 };
 
 }  // namespace assay::stats

@@ -68,6 +68,9 @@ void RowPyramid::take(const ImagePair& pair, RowRange rows) {
 }
 
 std::vector<CellNoiseOfMean> RowPyramid::offer_cells() {
+  for (std::size_t i = 0; i < found_.squares.size(); ++i) {
+    found_.noise.add_squares(i % extent_.channels, found_.squares[i]);
+  }
   found_.noise.build();
   for (const std::vector<Candidates>& tile : found_.tiles) {
     for (std::size_t g = 0; g < tile.size(); ++g) {

@@ -183,6 +183,24 @@ CALIBRATED(ImagePyramid, AnEdgeBeforeAConstantKeepsTheLevel, 854, 200, Shape::at
   return image_pyramid({a.view(), ImageReference{lit, means}}, {.constants_decide = false}).log_p;
 }
 
+// A filter spreads each value over 3 x 3 pixels. One side has rarer light.
+OwnedStack filtered(Philox& random, double rate) {
+  OwnedStack stack = lit_stack(random, {.rate = rate, .share = 0.8}, 64);
+  for (auto& image : stack.images) {
+    const auto sharp = image;
+    for (std::size_t e = 0; e < image.size(); ++e) {
+      image[e] = 0;
+      for (const std::size_t k : {0U, 1U, 2U, 24U, 25U, 26U, 48U, 49U, 50U})
+        image[e] += sharp[(e + k) % image.size()] / 9;
+    }
+  }
+  return stack;
+}
+CALIBRATED(ImagePyramid, FilteredLightKeepsTheLevel, 865, 600, Shape::at_most_uniform) {
+  const OwnedStack a = filtered(random, 0.0003);
+  return image_pyramid({a.view(), filtered(random, 0.02).view()}).log_p;
+}
+
 // An object covers .08 of each pixel in a row, and of the next row all but .08. Many pixels never
 // show the rarer.
 CALIBRATED(ImagePyramid, ASilhouetteKeepsTheLevel, 864, 400, Shape::at_most_uniform) {
