@@ -8,7 +8,6 @@
 
 #include "stats/basics/check.h"
 #include "stats/basics/search.h"
-#include "stats/basics/vector_copies.h"
 #include "stats/tails/special.h"
 
 namespace assay::stats {
@@ -38,115 +37,47 @@ constexpr double densest_sum = 4000;
 
 // ---- Durbin
 
-// A square matrix times 2^exponent. Powers leave the range of a double long before the end.
-struct ScaledMatrix {
-  std::size_t size;
-  std::vector<double> entries;
-  long exponent = 0;
-
-  double& at(std::size_t row, std::size_t column) { return entries[row * size + column]; }
-  double at(std::size_t row, std::size_t column) const { return entries[row * size + column]; }
-};
-
-/// Divides by the power of two next to the largest entry; returns its exponent. All entries of a
-/// high power are alike in size. In the first powers entries below 2^-500 of the largest become
-/// zero. They reach no bit of it, but their denormal products are slow.
-int rescale(std::vector<double>& entries) {
-  const int shift = std::ilogb(*std::max_element(entries.begin(), entries.end()));
-  const double scale = std::ldexp(1.0, -shift);
-  for (double& entry : entries) entry = entry * scale < 0x1p-500 ? 0 : entry * scale;
-  return shift;
-}
-
-// Durbin's matrix and its powers are symmetric about the other diagonal, so half of the entries are
-// computed.
-ASSAY_VECTOR_COPIES void square(const double* a, std::size_t size, double* c) {
-  const std::size_t last = size - 1;
-  for (std::size_t i = 0; i < size; ++i) {
-    double* const row = c + i * size;
-    // Four rows at a time, so that the sum is stored once for the four.
-    for (std::size_t k = 0; k < size; k += 4) {
-      const std::size_t most = size - 1 - k;
-      const auto factor = [&](std::size_t m) { return m <= most ? a[i * size + k + m] : 0; };
-      const auto other = [&](std::size_t m) { return a + (k + std::min(m, most)) * size; };
-      const double f[] = {factor(0), factor(1), factor(2), factor(3)};
-      const double* const o[] = {other(0), other(1), other(2), other(3)};
-      for (std::size_t j = 0; j <= last - i; ++j) {
-        row[j] = row[j] + f[0] * o[0][j] + f[1] * o[1][j] + f[2] * o[2][j] + f[3] * o[3][j];
-      }
-    }
-    for (std::size_t j = 0; j < last - i; ++j) c[(last - j) * size + last - i] = row[j];
-  }
-}
-
-ScaledMatrix squared(const ScaledMatrix& a) {
-  ScaledMatrix c{a.size, std::vector<double>(a.entries.size(), 0.0), 2 * a.exponent};
-  square(a.entries.data(), a.size, c.entries.data());
-  c.exponent += rescale(c.entries);
-  return c;
-}
-
-struct ScaledVector {
-  std::vector<double> entries;
-  long exponent = 0;
-};
-
-ScaledVector power_column(ScaledMatrix matrix, std::uint64_t exponent, std::size_t column) {
-  const std::size_t size = matrix.size;
-  ScaledVector result{std::vector<double>(size, 0.0)};
-  result.entries[column] = 1;
-  for (; exponent > 0; exponent >>= 1) {
-    if ((exponent & 1U) != 0) {
-      std::vector<double> product(size, 0.0);
-      for (std::size_t i = 0; i < size; ++i) {
-        for (std::size_t j = 0; j < size; ++j) product[i] += matrix.at(i, j) * result.entries[j];
-      }
-      result.entries = std::move(product);
-      result.exponent += matrix.exponent + rescale(result.entries);
-    }
-    if (exponent > 1) matrix = squared(matrix);
-  }
-  return result;
-}
-
-// Entries are 1 / (i - j + 1)! below the superdiagonal. The first column and last row are reduced
-// by powers of h = k - n d. By this part of a step the boundary misses the lattice.
-ScaledMatrix durbin_matrix(std::size_t size, double h) {
-  ScaledMatrix matrix{size, std::vector<double>(size * size, 0.0), 0};
-  for (std::size_t i = 0; i < size; ++i) {
-    for (std::size_t j = 0; j <= std::min(i + 1, size - 1); ++j) matrix.at(i, j) = 1;
-  }
-  double power = h;
-  for (std::size_t i = 0; i < size; ++i) {
-    matrix.at(i, 0) -= power;
-    matrix.at(size - 1, size - 1 - i) -= power;
-    power *= h;
-  }
-  const double twice = 2 * h - 1;
-  if (twice > 0) matrix.at(size - 1, 0) += std::pow(twice, static_cast<double>(size));
-  for (std::size_t i = 0; i < size; ++i) {
-    double inverse_factorial = 1;
-    for (std::size_t g = 1; g <= i + 1; ++g) {
-      inverse_factorial /= static_cast<double>(g);
-      if (i + 1 >= g) matrix.at(i, i + 1 - g) *= inverse_factorial;
-    }
-  }
-  matrix.exponent = rescale(matrix.entries);
-  return matrix;
-}
-
 // The result is ln P(D <= d). P is n! / n^n times an entry of the n-th power of Durbin's
-// (2k-1) x (2k-1) matrix, k = floor(n d) + 1. (Marsaglia, Tsang & Wang 2003, equation 1.) All terms
-// but the corner column are positive, so the result keeps about 13 digits. Cost (2k)^3 log n.
+// (2k-1) x (2k-1) matrix, k = floor(n d) + 1. (Marsaglia, Tsang & Wang 2003, equation 1.) Entries
+// are 1 / (i - j + 1)! below the superdiagonal. The first column and last row are reduced by powers
+// of h = k - n d. By this part of a step the boundary misses the lattice. The powers are taken of a
+// column, and nothing in them cancels. So the result keeps about 13 digits. Cost 40 n k.
 double log_durbin_lower(double distance, std::uint64_t n) {
-  const double size = static_cast<double>(n);
-  const double t = size * distance;
+  constexpr std::size_t most = 20;  // 1 / 20! is 4e-19.
+  const double values = static_cast<double>(n);
+  const double t = values * distance;
   const auto k = static_cast<std::size_t>(t) + 1;
   const double h = static_cast<double>(k) - t;
-  const ScaledVector result = power_column(durbin_matrix(2 * k - 1, h), n, k - 1);
-  const double entry = result.entries[k - 1];
-  return std::log(entry) + static_cast<double>(result.exponent) * std::log(2.0) +
-         std::lgamma(size + 1) - size * std::log(size);
+  const std::size_t size = 2 * k - 1;
+  const auto powers_over_factorials = [&](double x) {
+    std::vector<double> terms{1};
+    for (std::size_t g = 1; g <= std::max(size, most); ++g) {
+      terms.push_back(terms.back() * x / static_cast<double>(g));
+    }
+    return terms;
+  };
+  const std::vector<double> entry = powers_over_factorials(1);
+  const std::vector<double> missed = powers_over_factorials(h);
+  const double missed_twice = powers_over_factorials(std::max(0.0, 2 * h - 1))[size];
+  std::vector<double> column(size);
+  column[k - 1] = 1;
+  double log_p = std::lgamma(values + 1) - values * std::log(values);
+  for (std::uint64_t power = 0; power < n; ++power) {
+    std::vector<double> next(size);
+    for (std::size_t j = 1; j < size; ++j) next[j - 1] = column[j];
+    for (std::size_t g = 1; g <= std::min(size, most); ++g) {
+      for (std::size_t j = 0; j + g <= size; ++j) next[j + g - 1] += entry[g] * column[j];
+    }
+    for (std::size_t i = 0; i < size; ++i) {
+      next[i] -= missed[i + 1] * column[0];
+      next[size - 1] -= missed[size - i] * column[i];
+    }
+    next[size - 1] += missed_twice * column[0];
+    const double sum = std::accumulate(next.begin(), next.end(), 0.0);
+    log_p += std::log(sum);
+    std::ranges::transform(next, column.begin(), [&](double each) { return each / sum; });
+  }
+  return log_p + std::log(column[k - 1]);
 }
 
 // ---- Pelz & Good
@@ -203,39 +134,11 @@ double log_upper_from_one_sided(double d, std::uint64_t n) {
 
 // Bounds between the forms; n d^2 is the square of the limit law's argument. The corrected upper
 // tail is within 2e-9 relative of Durbin's matrix from n d^2 = 3 on for n > 500. From 4 on it is
-// within 2e-10 for every n. The expansion is within 4e-9 where the matrix is not used (10 ms at n d
-// = 60).
+// within 2e-10 for every n. The expansion is within 4e-9 where the matrix is not used.
 double upper_tail_from(std::uint64_t n) { return n <= 500 ? 4 : 3; }
 
-bool durbin_affordable(double d, std::uint64_t n) {
-  return n <= 100000 && static_cast<double>(n) * d <= 60;
-}
-
-enum class Body { exact, expansion };
-
-LogTails tails_by(Body by, double distance, std::uint64_t n) {
-  const double size = static_cast<double>(n);
-  const double t = size * distance;
-  if (t <= 0.5) return special::from_lower(special::lowest_log());
-  if (distance == 1) return special::from_upper(special::lowest_log());
-  // n! ((2 t - 1) / n)^n.
-  if (t <= 1) {
-    return special::from_lower(std::lgamma(size + 1) + size * std::log((2 * t - 1) / size));
-  }
-  if (distance >= 0.5 || t * distance >= upper_tail_from(n)) {
-    return special::from_upper(log_upper_from_one_sided(distance, n));
-  }
-  const bool by_matrix = by == Body::exact && durbin_affordable(distance, n);
-  return special::from_lower(by_matrix ? log_durbin_lower(distance, n)
-                                       : std::log(pelz_good_lower(distance, n)));
-}
-
-/// The upper end of the bracket in which ln P(D >= d), computed by this form, falls to
-/// log_probability.
-double solve_quantile(Body by, double log_probability, std::uint64_t n, double low, double high) {
-  const auto excess = [&](double d) { return log_probability - tails_by(by, d, n).upper; };
-  return root_bracket(excess, low, high, 44).second;
-}
+// Milliseconds. That is the body of the law for n up to 2000.
+constexpr double most_for_durbin = 2e5;
 
 }  // namespace
 
@@ -270,7 +173,19 @@ double log_kolmogorov_limit(double z) {
 LogTails kolmogorov_tails(double distance, std::uint64_t n) {
   check::at_least({"kolmogorov_tails", "n"}, n, 1);
   check::unit({"kolmogorov_tails", "distance"}, distance);
-  return tails_by(Body::exact, distance, n);
+  const double size = static_cast<double>(n);
+  const double t = size * distance;
+  if (t <= 0.5) return special::from_lower(special::lowest_log());
+  if (distance == 1) return special::from_upper(special::lowest_log());
+  // n! ((2 t - 1) / n)^n.
+  if (t <= 1) {
+    return special::from_lower(std::lgamma(size + 1) + size * std::log((2 * t - 1) / size));
+  }
+  if (distance >= 0.5 || t * distance >= upper_tail_from(n)) {
+    return special::from_upper(log_upper_from_one_sided(distance, n));
+  }
+  return special::from_lower(size * t <= most_for_durbin ? log_durbin_lower(distance, n)
+                                                         : std::log(pelz_good_lower(distance, n)));
 }
 
 double kolmogorov_upper_quantile(double log_probability, std::uint64_t n) {
@@ -282,22 +197,9 @@ double kolmogorov_upper_quantile(double log_probability, std::uint64_t n) {
   // Massart's bound 2 e^(-2 n d^2) lies above the law, so the quantile is at most its inverse.
   const double bound = std::sqrt((std::numbers::ln2 - log_probability) / (2 * size));
   const double highest = std::min(1.0, bound * (1 + 1e-12));
-  const double lowest = 0.5 / size;
-  // The expansion finds the place and the slope in microseconds. The matrix takes milliseconds and
-  // is asked about twice.
-  double near = solve_quantile(Body::expansion, log_probability, n, lowest, highest);
-  const double other = near * (1 - 1e-4);
-  const double slope =
-      (tails_by(Body::expansion, other, n).upper - tails_by(Body::expansion, near, n).upper) /
-      (other - near);
-  for (int i = 0; i < 10 && slope < 0; ++i) {
-    const double step = (log_probability - kolmogorov_tails(near, n).upper) / slope;
-    near = std::clamp(near + step, lowest, highest);
-    // The matrix gives a p-value of .01 to 1e-12, so no closer is needed. The upper side is the
-    // conservative one.
-    if (std::abs(step) <= 0x1p-38 * near) return std::min(near * (1 + 0x1p-38), highest);
-  }
-  return solve_quantile(Body::exact, log_probability, n, lowest, highest);
+  const auto excess = [&](double d) { return log_probability - kolmogorov_tails(d, n).upper; };
+  // The upper side is the conservative one.
+  return root_bracket(excess, 0.5 / size, highest, 44).second;
 }
 
 namespace {
