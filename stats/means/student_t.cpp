@@ -1,11 +1,8 @@
 #include "stats/means/student_t.h"
 
 #include <cmath>
-#include <functional>
-#include <limits>
 
 #include "stats/basics/check.h"
-#include "stats/basics/search.h"
 #include "stats/tails/tails.h"
 
 namespace assay::stats {
@@ -29,22 +26,6 @@ Scale scale_of(const char* function, const Moments& x, Reference reference) {
   return {std::sqrt(total), (n - 1) * inflation * inflation};
 }
 
-// The end of an interval on one side of `centre`. It doubles `first_step` (negative: to
-// the left), then brackets. `excess` is negative inside the interval and zero at its end. Infinite,
-// with the sign of the step, if no end is found within 1e300.
-double interval_end(const std::function<double(double)>& excess, double centre, double first_step) {
-  double inside = centre;
-  double step = first_step;
-  while (excess(centre + step) < 0) {
-    inside = centre + step;
-    step *= 2;
-    if (std::abs(step) > 1e300) return std::copysign(std::numeric_limits<double>::infinity(), step);
-  }
-  // No number lies between, so the end is the centre to within its last digit.
-  if (inside == centre + step) return inside;
-  return root(excess, {inside, centre + step}, 50);
-}
-
 void check_samples(const char* function, const Moments& x, const Moments& y) {
   check::at_least({function, "count of x"}, x.count, 2);
   check::at_least({function, "count of y"}, y.count, 2);
@@ -65,10 +46,6 @@ Scale scale_of(const char* function, const Moments& x, const Moments& y, double 
   return {std::sqrt(total), degrees};
 }
 
-double critical_value(double confidence, double degrees) {
-  return student_t_quantile({Tail::upper, std::log((1 - confidence) / 2)}, degrees);
-}
-
 }  // namespace
 
 TestResult student_t(const Moments& x, Reference null_mean, const char* caller) {
@@ -80,7 +57,7 @@ TestResult student_t(const Moments& x, Reference null_mean, const char* caller) 
 Interval student_t_interval(const Moments& x, Reference reference, double confidence) {
   check::inside_unit({"student_t_interval", "confidence"}, confidence);
   const Scale scale = scale_of("student_t_interval", x, reference);
-  const double t = critical_value(confidence, scale.degrees);
+  const double t = student_t_quantile({Tail::upper, std::log((1 - confidence) / 2)}, scale.degrees);
   const double centre = x.mean_less(reference.value);
   return {centre - t * scale.standard_error, centre + t * scale.standard_error, confidence};
 }
@@ -103,42 +80,6 @@ TestResult welch_t(const Moments& x, const Moments& y, Contrast null_value, cons
   const Scale scale = scale_of(caller, x, y, null_value.scale);
   const double t = contrast_of_means(x, y, null_value) / scale.standard_error;
   return by_tails(t, {"student-t", {scale.degrees}}, student_t_tails(t, scale.degrees));
-}
-
-Interval welch_t_interval(const Moments& x, const Moments& y, double confidence) {
-  check_samples("welch_t_interval", x, y);
-  check::inside_unit({"welch_t_interval", "confidence"}, confidence);
-  const Scale scale = scale_of("welch_t_interval", x, y, 1);
-  const double half = critical_value(confidence, scale.degrees) * scale.standard_error;
-  const double centre = contrast_of_means(x, y, {});
-  return {centre - half, centre + half, confidence};
-}
-
-Interval welch_ratio_interval(const Moments& x, const Moments& y, double confidence) {
-  constexpr double infinity = std::numeric_limits<double>::infinity();
-  check_samples("welch_ratio_interval", x, y);
-  check::inside_unit({"welch_ratio_interval", "confidence"}, confidence);
-  const Interval unbounded{-infinity, infinity, confidence};
-  const double ny = static_cast<double>(y.count);
-  if (y.mean == 0) return unbounded;
-  if (y.m2 > 0) {
-    // The limit of the statistic for a large ratio is the one-sample t of y against 0.
-    const double t = std::abs(y.mean) / std::sqrt(y.variance() / ny);
-    if (t <= critical_value(confidence, ny - 1)) return unbounded;
-  }
-  // A mean that is 0 without spread is no other part of y's than 0.
-  if (x.m2 == 0 && x.mean == 0) return {-1, -1, confidence};
-  const double centre = x.mean / y.mean;
-  const double step =
-      scale_of("welch_ratio_interval", x, y, centre).standard_error / std::abs(y.mean);
-  // Distance of E x - ratio E y = 0 beyond its critical value. Negative inside the interval.
-  const auto excess = [&](double ratio) {
-    const Scale scale = scale_of("welch_ratio_interval", x, y, ratio);
-    const double t = contrast_of_means(x, y, {ratio, 0}) / scale.standard_error;
-    return std::abs(t) - critical_value(confidence, scale.degrees);
-  };
-  return {interval_end(excess, centre, -step) - 1, interval_end(excess, centre, step) - 1,
-          confidence};
 }
 
 }  // namespace assay::stats

@@ -51,13 +51,4 @@ double contrast_of_means(const Moments& x, const Moments& y, Contrast contrast);
 TestResult welch_t(const Moments& x, const Moments& y, Contrast null_value,
                    const char* caller = "welch_t");
 
-// Central interval of E x - E y.
-Interval welch_t_interval(const Moments& x, const Moments& y, double confidence);
-
-// Central interval of E x / E y - 1 by inversion of the contrast E x - r E y = 0. It is Fieller's
-// (1954), with Welch's degrees of freedom at each r. If E y is not separated from zero at this
-// confidence, the set of accepted ratios is unbounded. The interval is then (-infinity, infinity).
-// It is the point -1 if x is 0 without spread.
-Interval welch_ratio_interval(const Moments& x, const Moments& y, double confidence);
-
 }  // namespace assay::stats

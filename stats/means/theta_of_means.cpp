@@ -68,8 +68,7 @@ double log_p_of_no_sign(const MeanSample& y, const MeanTest& test) {
 const MeanTest mean_by_t{
     .of_one = [](const MeanSample& x, const Reference& null) { return student_t(x.moments, null); },
     .of_two = [](const MeanSample& x, const MeanSample& y,
-                 const Contrast& null) { return welch_t(x.moments, y.moments, null); },
-    .closed_interval = true};
+                 const Contrast& null) { return welch_t(x.moments, y.moments, null); }};
 const MeanTest mean_by_corrected_t{
     .of_one = [](const MeanSample& x,
                  const Reference& null) { return skewness_corrected_t(x.moments, null); },
@@ -124,35 +123,11 @@ TestResult ThetaOfMeans::at(double theta) const {
 }
 
 Interval ThetaOfMeans::interval(double confidence) const {
-  const auto [factor, offset] = contrast;
   if (unit() == 0) return {-unbounded, unbounded, confidence};
-  // Theta also scales the reference's error, and the offset is no part of a ratio.
-  const bool inverted = relative && (y ? offset != 0 : reference.standard_error > 0);
-  if (inverted || !test.closed_interval) {
-    const double error = y ? step_of(*y, factor) : reference.standard_error;
-    return interval_by_inversion(
-        [&](double theta) { return at(theta); },
-        {.estimate = estimate(), .step = std::hypot(step_of(x, 1), error) / unit()}, confidence);
-  }
-  if (!y) {
-    return map_ends(
-        student_t_interval(x.moments, {reference.value + offset, reference.standard_error},
-                           confidence),
-        [&](double difference) { return difference / unit(); });
-  }
-  if (relative) {
-    const double sign = std::copysign(1, factor * y->moments.mean);
-    return map_ends(welch_ratio_interval(x.moments, y->moments, confidence),
-                    [&](double ratio) { return sign * ((1 + ratio) / factor - 1); });
-  }
-  // Only count, mean and m2 enter. The difference stands for x, with y's mean at 0.
-  Moments moved = x.moments;
-  moved.mean = estimate();
-  Moments scaled = y->moments;
-  scaled.mean = 0;
-  scaled.m2 *= factor * factor;
-  moved.rest = scaled.rest = 0;
-  return welch_t_interval(moved, scaled, confidence);
+  const double error = y ? step_of(*y, contrast.scale) : reference.standard_error;
+  return interval_by_inversion(
+      [&](double theta) { return at(theta); },
+      {.estimate = estimate(), .step = std::hypot(step_of(x, 1), error) / unit()}, confidence);
 }
 
 Evidence ThetaOfMeans::evidence() const {

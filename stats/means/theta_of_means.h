@@ -16,11 +16,10 @@ struct MeanSample {
   std::shared_ptr<const ValueCells> cells = nullptr;  // The values, for bets.
 };
 
-// Tests "E x = value", and "E x - scale E y = offset". Without closed intervals, they are inverted.
+// Tests "E x = value", and "E x - scale E y = offset".
 struct MeanTest {
   TestResult (*of_one)(const MeanSample& x, const Reference& null);
   TestResult (*of_two)(const MeanSample& x, const MeanSample& y, const Contrast& null);
-  bool closed_interval = false;
   bool bets = false;
 };
 
@@ -47,6 +46,8 @@ struct ThetaOfMeans {
   double estimate() const;
   // Null hypothesis: theta is this value. Throws as the test does.
   TestResult at(double theta) const;
+  // The values that `at` does not reject. Of a ratio of means it is Fieller's (1954), with Welch's
+  // degrees of freedom. It has no ends if y does not show its sign, and for a unit of 0.
   Interval interval(double confidence) const;
   // All three, of a copy.
   Evidence evidence() const;

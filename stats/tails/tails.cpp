@@ -318,6 +318,7 @@ double end_of(const Curve& curve, const Whereabouts& around, double direction) {
 
 Interval interval_by_inversion(const std::function<TestResult(double)>& at,
                                const Whereabouts& around, double confidence) {
+  check::inside_unit({"interval_by_inversion", "confidence"}, confidence);
   const double level = std::log((1 - confidence) / 2);
   const auto above = [&](double theta) { return at(theta).log_p_lower - level; };
   const auto below = [&](double theta) { return at(theta).log_p_upper - level; };

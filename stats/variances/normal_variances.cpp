@@ -37,15 +37,6 @@ TestResult chi_square_variance(const Moments& x, double null_variance) {
   return by_tails(statistic, {"chi-square", {degrees}}, chi_square_tails(statistic, degrees));
 }
 
-Interval chi_square_variance_interval(const Moments& x, double confidence) {
-  check_sample("chi_square_variance_interval", x);
-  check::inside_unit({"chi_square_variance_interval", "confidence"}, confidence);
-  const double degrees = static_cast<double>(x.count - 1);
-  const double log_tail = std::log((1 - confidence) / 2);
-  return {x.m2 / chi_square_quantile({Tail::upper, log_tail}, degrees),
-          x.m2 / chi_square_quantile({Tail::lower, log_tail}, degrees), confidence};
-}
-
 TestResult f_ratio(const Moments& x, const Moments& y, double null_ratio) {
   check_samples("f_ratio", x, y);
   check::positive({"f_ratio", "null_ratio"}, null_ratio);
@@ -54,29 +45,18 @@ TestResult f_ratio(const Moments& x, const Moments& y, double null_ratio) {
   return by_tails(f, {"F", {degrees.numerator, degrees.denominator}}, f_tails(f, degrees));
 }
 
-Interval f_ratio_interval(const Moments& x, const Moments& y, double confidence) {
-  check_samples("f_ratio_interval", x, y);
-  check::inside_unit({"f_ratio_interval", "confidence"}, confidence);
-  const FDegrees degrees = degrees_of(x, y);
-  const double ratio = x.variance() / y.variance();
-  const double log_tail = std::log((1 - confidence) / 2);
-  return {ratio / f_quantile({Tail::upper, log_tail}, degrees),
-          ratio / f_quantile({Tail::lower, log_tail}, degrees), confidence};
-}
-
 Evidence log_variance_evidence(const Moments& x, const std::optional<Moments>& y, double null) {
   const auto at = [=](double theta) {
     const double value = null * std::exp(theta);
     return y ? f_ratio(x, *y, value) : chi_square_variance(x, value);
   };
+  const double estimate = std::log(x.variance() / (y ? y->variance() : 1) / null);
+  const double step = std::sqrt(2 / static_cast<double>(x.count - 1) +
+                                (y ? 2 / static_cast<double>(y->count - 1) : 0));
   const auto interval = [=](double confidence) {
-    return map_ends(
-        y ? f_ratio_interval(x, *y, confidence) : chi_square_variance_interval(x, confidence),
-        [=](double value) { return std::log(value / null); });
+    return interval_by_inversion(at, {.estimate = estimate, .step = step}, confidence);
   };
-  return {.estimate = std::log(x.variance() / (y ? y->variance() : 1) / null),
-          .at = at,
-          .interval = interval};
+  return {.estimate = estimate, .at = at, .interval = interval};
 }
 
 }  // namespace assay::stats

@@ -13,16 +13,10 @@ namespace assay::stats {
 // < 2, null_variance not positive and finite), ZeroVariance (s2 = 0).
 TestResult chi_square_variance(const Moments& x, double null_variance);
 
-// Central interval of Var x.
-Interval chi_square_variance_interval(const Moments& x, double confidence);
-
 // Null hypothesis: Var x / Var y = null_ratio. F = (s2x / s2y) / null_ratio ~ F(nx - 1, ny - 1).
 // Exact for two independent normal samples and only there (see assumption_gates.h). Throws
 // std::domain_error (count < 2, null_ratio not positive and finite), ZeroVariance.
 TestResult f_ratio(const Moments& x, const Moments& y, double null_ratio);
-
-// Central interval of Var x / Var y.
-Interval f_ratio_interval(const Moments& x, const Moments& y, double confidence);
 
 // Evidence about theta = ln(Var x / null), or about ln(Var x / Var y / null), by these tests.
 Evidence log_variance_evidence(const Moments& x, const std::optional<Moments>& y, double null);

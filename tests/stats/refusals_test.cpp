@@ -1,5 +1,6 @@
 // Each function refuses arguments that it cannot take: tests/tables/refused_arguments.txt.
 
+#include "stats/basics/adaptive_quadrature.h"
 #include "stats/basics/moments.h"
 #include "stats/cells/adaptive_cells.h"
 #include "stats/cells/chi_square.h"
@@ -21,7 +22,6 @@
 #include "stats/planning/power.h"
 #include "stats/pyramids/image_pyramid.h"
 #include "stats/tails/kolmogorov.h"
-#include "stats/basics/adaptive_quadrature.h"
 #include "stats/tails/tails.h"
 #include "stats/variances/influence.h"
 #include "stats/variances/normal_variances.h"
@@ -162,7 +162,7 @@ TEST(Refusals, OfMeans) {
   REFUSED(welch_t(x, one, {}));
   REFUSED(welch_t(x, x, {nan, 0}));
   REFUSED(welch_t(x, x, {1, nan}));
-  REFUSED(welch_ratio_interval(x, x, 0));
+  REFUSED(interval_by_inversion({}, {}, 0));
   REFUSED(skewness_corrected_t(constant, {0}));
   REFUSED(skewness_corrected_welch(x, x, {1, nan}));
   REFUSED(skewness_corrected_welch(constant, constant, {}));
@@ -281,7 +281,7 @@ TEST(Refusals, OfVariances) {
   for (const double bad : {0.0, -1.0, nan, infinity}) {
     EXPECT_THROW(chi_square_variance(x, bad), std::domain_error);
     EXPECT_THROW(f_ratio(x, x, bad), std::domain_error);
-    EXPECT_THROW(chi_square_variance_interval(x, bad), std::domain_error);
+    EXPECT_THROW(log_variance_evidence(x, {}, 1).interval(bad), std::domain_error);
   }
   const auto joint = [](const Values& values, double cost = 1) {
     return tests::joint({values, Values(values.size(), cost)});

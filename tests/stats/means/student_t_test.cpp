@@ -1,5 +1,4 @@
-#include "stats/means/student_t.h"
-
+#include "stats/means/theta_of_means.h"
 #include "tests/stats/prelude.h"
 
 namespace assay::stats {
@@ -20,13 +19,18 @@ TEST(StudentT, TheIntervalEndsAreJustRejected) {
   EXPECT_NEAR(std::exp(student_t(x, {1 + interval.high, .1}).log_p_lower), .005, 1e-12);
 }
 
+Interval interval_of(const Moments& x, const Moments& y, bool relative) {
+  return ThetaOfMeans{.test = mean_by_t, .x = {x}, .y = MeanSample{y}, .relative = relative}
+      .interval(.95);
+}
+
 TEST(WelchT, IntervalEndsAreJustRejected) {
   const Moments x = moments_of(golden_x);
   const Moments y = moments_of(golden_y);
-  const Interval difference = welch_t_interval(x, y, .95);
+  const Interval difference = interval_of(x, y, false);
   EXPECT_NEAR(std::exp(welch_t(x, y, {1, difference.low}).log_p_upper), .025, 1e-12);
   EXPECT_NEAR(std::exp(welch_t(x, y, {1, difference.high}).log_p_lower), .025, 1e-12);
-  const Interval ratio = welch_ratio_interval(x, y, .95);
+  const Interval ratio = interval_of(x, y, true);
   EXPECT_NEAR(std::exp(welch_t(x, y, {1 + ratio.low, 0}).log_p_upper), .025, 1e-10);
   EXPECT_NEAR(std::exp(welch_t(x, y, {1 + ratio.high, 0}).log_p_lower), .025, 1e-10);
 }
@@ -34,14 +38,14 @@ TEST(WelchT, IntervalEndsAreJustRejected) {
 TEST(WelchT, ARatioToAMeanNearZeroIsUnbounded) {
   const Moments x = moments_of(golden_x);
   const Moments y = moments_of(std::vector<double>{-1, 1, .2, -.3});
-  const Interval ratio = welch_ratio_interval(x, y, .95);
+  const Interval ratio = interval_of(x, y, true);
   EXPECT_EQ(ratio.low, -std::numeric_limits<double>::infinity());
   EXPECT_EQ(ratio.high, std::numeric_limits<double>::infinity());
 }
 
 TEST(WelchT, WhatIsZeroWithoutSpreadIsNoPartOfTheOther) {
   const Moments zeros = moments_of(std::vector<double>(5, 0.0));
-  const Interval ratio = welch_ratio_interval(zeros, moments_of(std::vector{3., 4., 5.}), .95);
+  const Interval ratio = interval_of(zeros, moments_of(std::vector{3., 4., 5.}), true);
   EXPECT_EQ(ratio.low, -1);
   EXPECT_EQ(ratio.high, -1);
 }

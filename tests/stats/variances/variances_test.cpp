@@ -10,15 +10,15 @@ const Moments y = moments_of(golden_y);
 const Moments constant = moments_of(std::vector<double>{1, 1, 1, 1});
 
 TEST(ChiSquareVariance, IntervalEndsAreJustRejected) {
-  const Interval interval = chi_square_variance_interval(x, .98);
-  EXPECT_NEAR(std::exp(chi_square_variance(x, interval.low).log_p_upper), .01, 1e-12);
-  EXPECT_NEAR(std::exp(chi_square_variance(x, interval.high).log_p_lower), .01, 1e-12);
+  const Interval log = log_variance_evidence(x, {}, 1).interval(.98);
+  EXPECT_NEAR(std::exp(chi_square_variance(x, std::exp(log.low)).log_p_upper), .01, 1e-12);
+  EXPECT_NEAR(std::exp(chi_square_variance(x, std::exp(log.high)).log_p_lower), .01, 1e-12);
 }
 
 TEST(FRatio, IntervalEndsAreJustRejected) {
-  const Interval interval = f_ratio_interval(x, y, .98);
-  EXPECT_NEAR(std::exp(f_ratio(x, y, interval.low).log_p_upper), .01, 1e-12);
-  EXPECT_NEAR(std::exp(f_ratio(x, y, interval.high).log_p_lower), .01, 1e-12);
+  const Interval log = log_variance_evidence(x, y, 1).interval(.98);
+  EXPECT_NEAR(std::exp(f_ratio(x, y, std::exp(log.low)).log_p_upper), .01, 1e-12);
+  EXPECT_NEAR(std::exp(f_ratio(x, y, std::exp(log.high)).log_p_lower), .01, 1e-12);
 }
 
 // Sums of `shape` exponential values: excess kurtosis 6 / shape.
