@@ -5,6 +5,7 @@
 #include <cmath>
 #include <iterator>
 #include <limits>
+#include <utility>
 
 #include "stats/basics/check.h"
 #include "stats/basics/scores.h"
@@ -79,9 +80,8 @@ const std::array<double, nodes>& weights_at_end() {
   return weights;
 }
 
-// Mass that a jump may add or take, also beyond the outermost nodes, which neither a part nor its
-// halves see. With a jump the density at the ends departs from the polynomial.
-double unseen(Span span, const AdaptiveQuadrature::Values& at) {
+// How far the density at both ends departs from the polynomial, as it does with a jump.
+double departure_at_ends(const AdaptiveQuadrature::Values& at) {
   double low = at[low_end].value - weights_at_end()[0] * at[0].value;
   double high = at[high_end].value - weights_at_end()[0] * at[0].value;
   for (std::size_t i = 1; i < nodes; i += 2) {
@@ -90,18 +90,20 @@ double unseen(Span span, const AdaptiveQuadrature::Values& at) {
     low -= near * at[i].value + far * at[i + 1].value;
     high -= far * at[i].value + near * at[i + 1].value;
   }
-  return jump_share * span.width() * (std::abs(low) + std::abs(high));
+  return std::abs(low) + std::abs(high);
 }
 
 AdaptiveQuadrature::Sampled sampled_in(Span span, const AdaptiveQuadrature::Values& at) {
-  AdaptiveQuadrature::Sampled found{.ends = {at[low_end].value, at[high_end].value}};
+  AdaptiveQuadrature::Sampled found{.departure_at_ends = departure_at_ends(at)};
   for (std::size_t i = 0; i < nodes; ++i) {
     const double weight = span.width() / 2 * node_weights()[i];
     found.parts[i] = weight * at[i].value;
     found.integral =
         found.integral + Integral{found.parts[i], weight * at[i].error, weight * at[i].error};
   }
-  found.integral.error += unseen(span, at);
+  // Mass that a jump may add or take, also beyond the outermost nodes, which neither a part nor its
+  // halves see.
+  found.integral.error += jump_share * span.width() * found.departure_at_ends;
   return found;
 }
 
@@ -385,31 +387,14 @@ const std::array<Slopes, nodes>& legendre_at_nodes() {
 struct Spread {
   Integral mass;
   Slopes slopes = {};
-  // Mass that a jump beyond the outermost nodes may add or take. The density at the ends then
-  // departs from the interpolant.
-  double unseen = 0;
+  double unseen = 0;  // Mass that a jump beyond the outermost nodes may add or take.
 
-  Spread(const AdaptiveQuadrature::Sampled& sampled, double width) : mass(sampled.integral) {
+  Spread(const AdaptiveQuadrature::Sampled& sampled, double width)
+      : mass(sampled.integral), unseen(blind_share * width * sampled.departure_at_ends) {
     for (std::size_t i = 0; i < nodes; ++i) {
       const Slopes& p = legendre_at_nodes()[i];
       for (std::size_t k = 0; k < slopes.size(); ++k) slopes[k] += sampled.parts[i] * p[k] / 2;
     }
-    for (const int end : {-1, 1}) {
-      const double there = width * sampled.ends[end < 0 ? 0 : 1];
-      unseen += blind_share * std::abs(there - 2 * density_at(end));
-    }
-  }
-
- private:
-  // The interpolant at t = -1 or 1, from P_k(1) = 1 and P_k(-1) = (-1)^k. Its integral over t is
-  // the mass.
-  double density_at(int end) const {
-    double sum = mass.value / 2;
-    double sign = end;
-    for (std::size_t k = 0; k < slopes.size(); ++k, sign *= end) {
-      sum += slopes[k] * (2.0 * static_cast<double>(k) + 3) * sign;
-    }
-    return sum;
   }
 };
 
@@ -442,33 +427,37 @@ struct Part {
   Spread second;  // Upper half.
   double error = 0;
   double departure = 0;
-  double badness = 0;  // Above 1: to be halved.
-  int depth = 0;
 
-  bool operator<(const Part& other) const { return badness < other.badness; }
+  double badness(double tolerance) const {
+    return std::max(departure / largest_departure, error / tolerance);
+  }
 };
 
-// Halves the worst part first, so that the evaluations go where they help most.
+// Contiguous parts, halved level by level. So the evaluations help everywhere if they run out.
 class Table {
  public:
   Table(const AdaptiveQuadrature::Function& density, AdaptiveQuadrature& rule)
       : density_(density), rule_(rule) {}
 
-  void add(Span span) { add(span, spread(span), 0, 0); }
+  void add(Span span) { add(span, spread(span), 0); }
 
   void refine() {
-    while (parts_.front().badness > 1 && !rule_.exhausted()) {
-      std::pop_heap(parts_.begin(), parts_.end());
-      const Part part = parts_.back();
-      parts_.pop_back();
-      const auto [low, high] = part.span.halves();
-      add(low, part.first, part.departure / 4, part.depth + 1);
-      add(high, part.second, part.departure / 4, part.depth + 1);
+    std::size_t before = 0;
+    for (int depth = 0; depth < deepest_bisection && parts_.size() > before; ++depth) {
+      before = parts_.size();
+      for (const Part& part : std::exchange(parts_, {})) {
+        if (rule_.exhausted() || part.badness(rule_.limits().tolerance) <= 1) {
+          parts_.push_back(part);
+          continue;
+        }
+        const auto [low, high] = part.span.halves();
+        add(low, part.first, part.departure / 4);
+        add(high, part.second, part.departure / 4);
+      }
     }
   }
 
-  TabulatedLaw result() {
-    std::ranges::sort(parts_, {}, [](const Part& part) { return part.span.low; });
+  TabulatedLaw result() const {
     TabulatedLaw law{.place = {parts_.front().span.low}, .cumulated = {0}};
     double departure = 0;
     for (const Part& part : parts_) {
@@ -487,19 +476,14 @@ class Table {
 
   // Part of the departure is inherited from the part that this is a half of. Two halves that agree
   // by luck do so once.
-  void add(Span span, const Spread& whole, double inherited, int depth) {
+  void add(Span span, const Spread& whole, double inherited) {
     const auto [low, high] = span.halves();
-    Part part{.span = span, .first = spread(low), .second = spread(high), .depth = depth};
+    Part part{.span = span, .first = spread(low), .second = spread(high)};
     const Integral sum = part.first.mass + part.second.mass;
     part.error = std::max(std::abs(sum.value - whole.mass.value), sum.error);
     const double seen = largest_distance(whole, part.first, part.second);
     part.departure = std::max(seen + part.first.unseen + part.second.unseen, inherited);
-    if (part.depth < deepest_bisection) {
-      part.badness =
-          std::max(part.departure / largest_departure, part.error / rule_.limits().tolerance);
-    }
     parts_.push_back(part);
-    std::push_heap(parts_.begin(), parts_.end());
   }
 
   static void append(TabulatedLaw& law, double place, const Spread& part) {
@@ -510,7 +494,7 @@ class Table {
 
   const AdaptiveQuadrature::Function& density_;
   AdaptiveQuadrature& rule_;
-  std::vector<Part> parts_;  // A heap, the worst first.
+  std::vector<Part> parts_;
 };
 
 }  // namespace

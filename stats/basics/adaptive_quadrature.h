@@ -70,12 +70,12 @@ class AdaptiveQuadrature {
   // Throws as above.
   std::vector<Integral> along(const PlaneValues& density, std::span<const Line> lines);
   // The integral without halving. Its error covers the values' own errors and a jump. Its parts are
-  // w_i f(x_i) times half the width at each node, in their order. The ends hold f
-  // just inside the part.
+  // w_i f(x_i) times half the width at each node, in their order. Just inside its ends f departs
+  // from the polynomial by so much, both added.
   struct Sampled {
     Integral integral;
     std::array<double, nodes> parts = {};
-    std::array<double, 2> ends = {};
+    double departure_at_ends = 0;
   };
   Sampled sampled(const Function& function, Span span);
   // A density as such a function, called as density(place) or density(places, values). Its values
@@ -154,7 +154,7 @@ struct TabulatedLaw {
   double operator()(double x) const;
 };
 
-// Halves parts where the mass is and where the density is no polynomial, the worst first. The
+// Halves parts where the mass is and where the density is no polynomial, level by level. The
 // visible part of their error is then below 1e-6. `parts` are contiguous and ascending. It stops
 // when the rule's evaluations are used up. Throws std::domain_error when there is no mass, or a
 // density is negative or not finite.
