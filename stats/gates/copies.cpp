@@ -25,11 +25,6 @@ struct Stay {
   bool operator==(const Stay& other) const {
     return length == other.length && same(value, other.value);
   }
-  std::uint64_t hash() const {
-    std::size_t hash = length;
-    boost::hash_combine(hash, std::bit_cast<std::uint64_t>(value));
-    return hash;
-  }
 };
 
 using Stays = std::vector<Stay>;
@@ -49,66 +44,20 @@ std::size_t stays_needed(double pairs) {
   return 1 + static_cast<std::size_t>(std::ceil(std::max(2.0, std::log2(pairs / chance_of_run))));
 }
 
-// Hashes of all windows of so many stays in turn. It also says if a window has three values.
-class Windows {
- public:
-  Windows(const Stays& stays, std::size_t size) : stays_(stays), size_(size) {
-    for (std::size_t i = 1; i < size_; ++i) highest_ *= factor;
-    for (std::size_t i = 0; i < size_ && i < stays_.size(); ++i) take(i);
+std::size_t hash_of(std::span<const Stay> window) {
+  std::size_t hash = 0;
+  for (const Stay& stay : window) {
+    boost::hash_combine(hash, stay.length);
+    boost::hash_combine(hash, std::bit_cast<std::uint64_t>(stay.value));
   }
+  return hash;
+}
 
-  bool done() const { return at_ + size_ > stays_.size(); }
-  std::size_t at() const { return at_; }
-  std::uint64_t hash() const { return hash_; }
-  // Neighbours differ. So the third value of a window is the first that is not that two before it.
-  bool has_three_values() const { return third_ >= at_ + 2; }
-  void advance() {
-    hash_ -= highest_ * stays_[at_].hash();
-    ++at_;
-    if (!done()) take(at_ + size_ - 1);
-  }
-
- private:
-  static constexpr std::uint64_t factor = 0x9e3779b97f4a7c15;
-
-  void take(std::size_t i) {
-    hash_ = hash_ * factor + stays_[i].hash();
-    if (i >= 2 && !same(stays_[i].value, stays_[i - 2].value)) third_ = i;
-  }
-
-  const Stays& stays_;
-  std::size_t size_;
-  std::size_t at_ = 0;
-  // The last stay that is not that two before it.
-  std::size_t third_ = 0;
-  std::uint64_t highest_ = 1;
-  std::uint64_t hash_ = 0;
-};
-
-// Windows that do not overlap, by their hashes. A run of twice their size less one has one of
-// them.
-class Anchors {
- public:
-  explicit Anchors(std::size_t size) : size_(size) {}
-
-  void add(const Windows& window) {
-    // Many windows of one hash are a short pattern over and over, and one of them will do.
-    constexpr std::size_t most = 4;
-    if (window.at() % size_ != 0 || !window.has_three_values()) return;
-    if (places_.count(window.hash()) < most) places_.emplace(window.hash(), window.at());
-  }
-  std::size_t size() const { return size_; }
-  std::vector<std::size_t> at(const Windows& window) const {
-    std::vector<std::size_t> places;
-    const auto [begin, end] = places_.equal_range(window.hash());
-    for (auto place = begin; place != end; ++place) places.push_back(place->second);
-    return places;
-  }
-
- private:
-  std::size_t size_;
-  std::unordered_multimap<std::uint64_t, std::size_t> places_;
-};
+// Neighbours differ. So a third value is not that two before it.
+bool has_three_values(std::span<const Stay> window) {
+  return !std::ranges::equal(window.first(window.size() - 2), window.subspan(2), same, &Stay::value,
+                             &Stay::value);
+}
 
 // Number of equal stays around and in two windows.
 std::size_t shared(const Stays& a, std::size_t i, const Stays& b, std::size_t j) {
@@ -132,38 +81,48 @@ RepeatedRun run_through(std::span<const double> a, std::size_t i, std::span<cons
   return {.first = i, .second = j, .length = length};
 }
 
-}  // namespace
-
-std::optional<RepeatedRun> repeated_run(std::span<const double> values) {
-  const auto n = static_cast<double>(values.size());
-  const std::size_t needed = stays_needed(n * (n - 1) / 2);
-  const Stays stays = stays_of(values);
-  Anchors anchors((needed + 1) / 2);
-  for (Windows window(stays, anchors.size()); !window.done(); window.advance()) {
-    for (const std::size_t earlier : anchors.at(window)) {
-      if (shared(stays, earlier, stays, window.at()) < needed) continue;
-      return run_through(values, stays[earlier].begin, values, stays[window.at()].begin);
+// A run of the second sample that the first one has, among so many pairs of places; of one sample,
+// a run that it has before.
+std::optional<RepeatedRun> run_again(std::span<const double> first, std::span<const double> second,
+                                     double pairs, bool of_one) {
+  // Many windows of one hash are a short pattern over and over, and one of them will do.
+  constexpr std::size_t most = 4;
+  const std::size_t needed = stays_needed(pairs);
+  const Stays one = stays_of(first);
+  const Stays two = of_one ? one : stays_of(second);
+  // Windows that do not overlap, by their hashes. A run of twice their size less one has one.
+  const std::size_t size = (needed + 1) / 2;
+  std::unordered_multimap<std::size_t, std::size_t> anchors;
+  const auto add = [&](std::size_t place, std::size_t hash) {
+    if (!has_three_values(std::span(one).subspan(place, size))) return;
+    if (anchors.count(hash) < most) anchors.emplace(hash, place);
+  };
+  for (std::size_t i = 0; !of_one && i + size <= one.size(); i += size) {
+    add(i, hash_of(std::span(one).subspan(i, size)));
+  }
+  for (std::size_t i = 0; i + size <= two.size(); ++i) {
+    const std::size_t hash = hash_of(std::span(two).subspan(i, size));
+    const auto [begin, end] = anchors.equal_range(hash);
+    for (auto anchor = begin; anchor != end; ++anchor) {
+      if (shared(one, anchor->second, two, i) < needed) continue;
+      return run_through(first, one[anchor->second].begin, second, two[i].begin);
     }
-    anchors.add(window);
+    if (of_one && i % size == 0) add(i, hash);
   }
   return {};
 }
 
+}  // namespace
+
+std::optional<RepeatedRun> repeated_run(std::span<const double> values) {
+  const auto n = static_cast<double>(values.size());
+  return run_again(values, values, n * (n - 1) / 2, true);
+}
+
 std::optional<RepeatedRun> common_run(std::span<const double> first,
                                       std::span<const double> second) {
-  const std::size_t needed =
-      stays_needed(static_cast<double>(first.size()) * static_cast<double>(second.size()));
-  const Stays one = stays_of(first);
-  const Stays two = stays_of(second);
-  Anchors anchors((needed + 1) / 2);
-  for (Windows window(one, anchors.size()); !window.done(); window.advance()) anchors.add(window);
-  for (Windows window(two, anchors.size()); !window.done(); window.advance()) {
-    for (const std::size_t place : anchors.at(window)) {
-      if (shared(one, place, two, window.at()) < needed) continue;
-      return run_through(first, one[place].begin, second, two[window.at()].begin);
-    }
-  }
-  return {};
+  return run_again(first, second,
+                   static_cast<double>(first.size()) * static_cast<double>(second.size()), false);
 }
 
 }  // namespace assay::stats
