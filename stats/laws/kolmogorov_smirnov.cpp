@@ -146,26 +146,12 @@ double log_p_of_counts(const Parts& x, const Parts& y) {
 
 }  // namespace
 
-std::vector<double> probabilities(std::span<const double> sorted, const ContinuousLaw& law) {
+OneSampleDistance ks_distance(std::span<const double> sorted, const ContinuousLaw& law) {
+  check::sorted("ks_distance", sorted);
   std::vector<double> at(sorted.size());
   std::ranges::transform(sorted, at.begin(), law);
   for (const double value : at) check::unit({"ks_distance", "cdf"}, value);
-  return at;
-}
-
-OneSampleDistance ks_distance(std::span<const double> sorted, const ContinuousLaw& law) {
-  check::sorted("ks_distance", sorted);
-  return largest_gap(sorted, probabilities(sorted, law));
-}
-
-OneSampleDistance ks_distance(std::span<const double> sorted, Probabilities at) {
-  check::sorted("ks_distance", sorted);
-  if (at.of_values.size() != sorted.size()) {
-    check::fail({"ks_distance", "number of probabilities"},
-                static_cast<double>(at.of_values.size()), "that of the values");
-  }
-  for (const double value : at.of_values) check::unit({"ks_distance", "probability"}, value);
-  return largest_gap(sorted, at.of_values);
+  return largest_gap(sorted, at);
 }
 
 TwoSampleDistance ks_distance(std::span<const double> sorted_x, std::span<const double> sorted_y) {

@@ -14,14 +14,6 @@ namespace assay::stats {
 // The law that a sample is held against: P(X <= x) at x. Values outside [0, 1] throw.
 using ContinuousLaw = std::function<double(double)>;
 
-// F(x_i) of a continuous law at the values of a sorted sample, in its order, if already known.
-struct Probabilities {
-  std::span<const double> of_values;
-};
-
-// F at each of the values. Throws std::domain_error: a value outside [0, 1].
-std::vector<double> probabilities(std::span<const double> sorted, const ContinuousLaw& law);
-
 struct OneSampleDistance {
   double distance = 0;
   std::uint64_t n = 0;
@@ -43,8 +35,6 @@ struct TwoSampleDistance {
 // D = max over i of max(i/n - F(x_i), F(x_i) - (i-1)/n). The values must be sorted ascending and
 // finite. Throws std::domain_error: empty, unsorted, non-finite, cdf outside [0, 1].
 OneSampleDistance ks_distance(std::span<const double> sorted, const ContinuousLaw& law);
-// Also throws if the number of probabilities is not that of values.
-OneSampleDistance ks_distance(std::span<const double> sorted, Probabilities at);
 
 // One merging pass over two sorted samples. It allocates for ties alone. Throws as above.
 TwoSampleDistance ks_distance(std::span<const double> sorted_x, std::span<const double> sorted_y);

@@ -148,9 +148,7 @@ void require_points(const Points& points) {
 
 Evidence points_against_law(const Points& points, const DeclaredLaw& declared) {
   require_points(points);
-  const std::vector<double> values = probabilities(points.sorted, declared.law);
-  const Evidence rest =
-      from_distance(ks_distance(points.sorted, Probabilities{values}), declared.error);
+  const Evidence rest = from_distance(ks_distance(points.sorted, declared.law), declared.error);
   if (declared.missing == 0 && points.missing() == 0) return rest;
   const Successes missing{.successes = points.missing(), .trials = points.draws};
   const Evidence excess = probability_evidence(missing, -declared.missing, declared.missing_error);

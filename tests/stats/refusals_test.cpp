@@ -137,8 +137,6 @@ TEST(Refusals, OfLaws) {
   REFUSED(ks_distance(good, falling));
   REFUSED(ks_distance(good, Values{1, infinity}));
   REFUSED(ks_distance(good, beyond));
-  REFUSED(ks_distance(good, Probabilities{Values{.5}}));
-  REFUSED(ks_distance(good, Probabilities{Values{.5, 1.5}}));
   REFUSED(ks_margin(distance, 1));
   REFUSED(quantile_test({0, 0, 0}, .5));
   REFUSED(quantile_test({5, 4, 9}, .5));

@@ -78,12 +78,6 @@ TEST(KolmogorovSmirnov, IntervalEndsAreJustRejected) {
   EXPECT_EQ(ks_interval(OneSampleDistance{.9, 5}, .98).high, 1);
 }
 
-TEST(KolmogorovSmirnov, TakesProbabilitiesInPlaceOfALaw) {
-  const std::vector<double> x = sorted(golden_x);
-  const std::vector<double> at = probabilities(x, exponential);
-  EXPECT_EQ(ks_distance(x, Probabilities{at}).distance, ks_distance(x, exponential).distance);
-}
-
 // Zero with this probability, uniform otherwise.
 std::vector<double> pixels(Philox& random, std::size_t n, double black) {
   return sorted(sample_of(n, [&] {
