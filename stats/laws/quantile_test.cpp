@@ -166,7 +166,7 @@ Interval quantile_difference_interval(std::span<const double> sorted_x,
 
 Evidence quantile_evidence(std::vector<double> sorted, double probability, double null,
                            double unit) {
-  const double middle = sorted[sample_quantile_rank(sorted.size(), probability)];
+  const double middle = sample_quantile(sorted, probability);
   const auto values = std::make_shared<const std::vector<double>>(std::move(sorted));
   return {.estimate = (middle - null) / unit,
           .at =
@@ -184,10 +184,7 @@ Evidence quantile_evidence(std::vector<double> sorted_x, std::vector<double> sor
                            double probability) {
   const auto x = std::make_shared<const std::vector<double>>(std::move(sorted_x));
   const auto y = std::make_shared<const std::vector<double>>(std::move(sorted_y));
-  const auto middle = [&](const std::vector<double>& sorted) {
-    return sorted[sample_quantile_rank(sorted.size(), probability)];
-  };
-  return {.estimate = middle(*x) - middle(*y),
+  return {.estimate = sample_quantile(*x, probability) - sample_quantile(*y, probability),
           .at = [=](double theta) { return quantile_compare(*x, *y, probability, theta); },
           .interval =
               [=](double confidence) {

@@ -179,6 +179,9 @@ TestResult influence_t(const Influence& x, const Influence& y, double log_ratio)
   return skewness_corrected_welch(x.relative, y.relative, {.scale = null}, "influence_t");
 }
 
+namespace {
+
+// The estimate with its standard error, at the truths as they are known.
 Reference log_ratio_estimate(const LogRatio& ratio) {
   double variance = 0;
   std::vector<double> logs;
@@ -191,6 +194,7 @@ Reference log_ratio_estimate(const LogRatio& ratio) {
   return {ratio.sign * (logs[0] - second) - ratio.log_null, std::sqrt(variance)};
 }
 
+// Null hypothesis: theta = this value. Two equal truths are one, with one error.
 TestResult log_ratio_test(const LogRatio& ratio, double theta) {
   std::vector<UncertainReference> truths;
   for (const RatioSide& side : ratio.sides) {
@@ -215,19 +219,18 @@ TestResult log_ratio_test(const LogRatio& ratio, double theta) {
   return test_over_references(at, truths);
 }
 
-Interval log_ratio_interval(const LogRatio& ratio, double confidence) {
-  const auto [estimate, error] = log_ratio_estimate(ratio);
-  if (error == 0) return {estimate, estimate, confidence};
-  return interval_by_inversion([&](double theta) { return log_ratio_test(ratio, theta); },
-                               {.estimate = estimate, .step = error}, confidence);
-}
+}  // namespace
 
 Evidence log_ratio_evidence(const LogRatio& ratio) {
-  const auto [estimate, error] = log_ratio_estimate(ratio);
-  return {.estimate = estimate,
-          .at = [=](double theta) { return log_ratio_test(ratio, theta); },
-          .interval = [=](double confidence) { return log_ratio_interval(ratio, confidence); },
-          .exact = error == 0};
+  const Reference known = log_ratio_estimate(ratio);
+  const auto at = [=](double theta) { return log_ratio_test(ratio, theta); };
+  const auto interval = [=](double confidence) -> Interval {
+    if (known.standard_error == 0) return {known.value, known.value, confidence};
+    return interval_by_inversion(at, {.estimate = known.value, .step = known.standard_error},
+                                 confidence);
+  };
+  return {
+      .estimate = known.value, .at = at, .interval = interval, .exact = known.standard_error == 0};
 }
 
 }  // namespace assay::stats

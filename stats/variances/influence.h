@@ -59,14 +59,8 @@ struct LogRatio {
   double sign = 1;  // -1 if the sides are inverses of the quantities.
 };
 
-// The estimate with its standard error, at the truths as they are known.
-Reference log_ratio_estimate(const LogRatio& ratio);
-// Null hypothesis: theta = this value, by influence_t over the truths (uncertain_reference.h). Two
-// equal truths are one, with one error.
-TestResult log_ratio_test(const LogRatio& ratio, double theta);
-// The values that log_ratio_test does not reject; the estimate if it has no error.
-Interval log_ratio_interval(const LogRatio& ratio, double confidence);
-// The three together.
+// Evidence about theta, by influence_t over the truths (uncertain_reference.h). Two equal truths
+// are one, with one error. Without an error the interval is the estimate.
 Evidence log_ratio_evidence(const LogRatio& ratio);
 
 // Relative tolerance for equal quantities without spread. It is larger than the rounding of a
