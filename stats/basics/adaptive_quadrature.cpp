@@ -136,15 +136,6 @@ void grade(double from, double to, double gap, std::vector<double>& borders) {
 
 }  // namespace
 
-// A part of a line. Its integral is the sum over its two halves, halved again or not.
-struct AdaptiveQuadrature::Part {
-  Line line;
-  Integral whole;  // By its own nodes.
-  int depth;
-  Integral integral = {};
-  std::size_t halves = 0;  // Index of the first half, behind its part; 0 if there is none.
-};
-
 // The integrals along lines without halving, whose places are asked for together.
 std::vector<Integral> AdaptiveQuadrature::whole(const PlaneValues& density,
                                                 std::span<const Line> lines) {
@@ -184,94 +175,66 @@ AdaptiveQuadrature::Sampled AdaptiveQuadrature::sampled(const Function& function
   return sampled_in(span, function(places_in(span)));
 }
 
-Integral AdaptiveQuadrature::over(const Function& function, Span span) {
-  return refined(function, span, sampled(function, span).integral, deepest_bisection);
-}
-
-Integral AdaptiveQuadrature::refined(const Function& function, Span span, Integral whole,
-                                     int depth) {
-  const auto [first, second] = span.halves();
-  const Integral one = sampled(function, first).integral;
-  const Integral two = sampled(function, second).integral;
-  const Integral sum = from_halves(whole, one, two);
-  if (is_good(sum, limits_.tolerance)) return sum;
-  if (depth <= 0 || exhausted()) return given_up(sum);
-  return refined(function, first, one, depth - 1) + refined(function, second, two, depth - 1);
-}
-
-// Evaluates the halves of the parts from `first` on. Appends those whose own halves must be looked
-// at.
-void AdaptiveQuadrature::halve(const PlaneValues& density, std::vector<Part>& parts,
-                               std::size_t first, bool ended) {
-  const std::size_t last = parts.size();
-  std::vector<Line> halves;
-  for (std::size_t i = first; i < last; ++i) {
-    for (const Span& half : parts[i].line.y.halves()) halves.push_back({parts[i].line.x, half});
-  }
-  const std::vector<Integral> found = whole(density, halves);
-  for (std::size_t i = first; i < last; ++i) {
-    const std::size_t one = 2 * (i - first);
-    const int depth = parts[i].depth;
-    parts[i].integral = from_halves(parts[i].whole, found[one], found[one + 1]);
-    if (is_good(parts[i].integral, limits_.tolerance)) continue;
-    if (depth <= 0 || ended) {
-      parts[i].integral = given_up(parts[i].integral);
-      continue;
-    }
-    parts[i].halves = parts.size();
-    for (const std::size_t half : {one, one + 1}) {
-      parts.push_back({.line = halves[half], .whole = found[half], .depth = depth - 1});
-    }
-  }
-}
-
-// Nothing if a level would use up the evaluations, or is too large to keep. A density that is rough
-// everywhere is halved without end.
-std::optional<std::vector<Integral>> AdaptiveQuadrature::side_by_side(const PlaneValues& density,
-                                                                      std::span<const Line> lines) {
+// The integrals along lines, of which `whole` has those without halving.
+std::vector<Integral> AdaptiveQuadrature::refined(const Wholes& whole,
+                                                  std::span<const Line> lines) {
+  struct Part {
+    Line line;
+    Integral whole;          // By its own nodes.
+    Integral integral = {};  // The sum over its two halves, halved again or not.
+    std::size_t halves = 0;  // Index of the first half, behind its part; 0 if there is none.
+  };
   constexpr std::size_t most_of_a_level = std::size_t{1} << 20;
-  const bool ended = exhausted();
-  const std::vector<Integral> wholes = whole(density, lines);
+  const std::vector<Integral> wholes = whole(lines);
   std::vector<Part> parts;
-  for (const Line& line : lines) {
-    parts.push_back({.line = line, .whole = wholes[parts.size()], .depth = deepest_bisection});
+  for (const Line& line : lines) parts.push_back({line, wholes[parts.size()]});
+  std::size_t next = 0;
+  for (int depth = deepest_bisection; next < parts.size(); --depth) {
+    const std::size_t last = parts.size();
+    std::vector<Line> halves;
+    for (std::size_t i = next; i < last; ++i) {
+      for (const Span& half : parts[i].line.y.halves()) halves.push_back({parts[i].line.x, half});
+    }
+    // A density that is rough everywhere would be halved without end.
+    const std::size_t places = (nodes + 2) * halves.size();
+    const bool ended =
+        depth == 0 || places > most_of_a_level || used_ + places >= limits_.evaluations;
+    const std::vector<Integral> found = whole(halves);
+    for (std::size_t one = 0; next < last; ++next, one += 2) {
+      Integral& sum = parts[next].integral;
+      sum = from_halves(parts[next].whole, found[one], found[one + 1]);
+      if (is_good(sum, limits_.tolerance)) continue;
+      if (ended) {
+        sum = given_up(sum);
+        continue;
+      }
+      parts[next].halves = parts.size();
+      parts.push_back({halves[one], found[one]});
+      parts.push_back({halves[one + 1], found[one + 1]});
+    }
   }
-  for (std::size_t first = 0, last = 0; first < parts.size(); first = last) {
-    last = parts.size();
-    const std::size_t places = 2 * nodes * (last - first);
-    if (!ended && (places > most_of_a_level || used_ + places >= limits_.evaluations)) return {};
-    halve(density, parts, first, ended);
-  }
-  // Halves stand behind their part.
-  std::vector<Integral> integrals(lines.size());
   for (std::size_t i = parts.size(); i-- > 0;) {
     const std::size_t halves = parts[i].halves;
     if (halves > 0) parts[i].integral = parts[halves].integral + parts[halves + 1].integral;
-    if (i < lines.size()) integrals[i] = parts[i].integral;
   }
+  std::vector<Integral> integrals;
+  for (const Part& part : std::span(parts).first(lines.size())) integrals.push_back(part.integral);
   return integrals;
+}
+
+Integral AdaptiveQuadrature::over(const Function& function, Span span) {
+  const Line line{0, span};
+  const auto whole = [&](std::span<const Line> parts) {
+    std::vector<Integral> integrals;
+    for (const Line& part : parts) integrals.push_back(sampled(function, part.y).integral);
+    return integrals;
+  };
+  return refined(whole, {&line, 1})[0];
 }
 
 std::vector<Integral> AdaptiveQuadrature::along(const PlaneValues& density,
                                                 std::span<const Line> lines) {
-  const bool ended = exhausted();
-  const std::uint64_t used = used_;
-  const double largest = largest_;
-  if (const auto together = side_by_side(density, lines); together && (ended || !exhausted())) {
-    return *together;
-  }
-  // The evaluations ended on the way. The order of lines decides who gets the last, so start again.
-  used_ = used;
-  largest_ = largest;
-  std::vector<Integral> integrals(lines.size());
-  std::ranges::transform(lines, integrals.begin(), [&](const Line& line) {
-    const auto at_x = [&](std::span<const double> y, std::span<double> values) {
-      const std::vector<double> x(y.size(), line.x);
-      density(x, y, values);
-    };
-    return over(of(at_x), line.y);
-  });
-  return integrals;
+  return refined([&](std::span<const Line> parts) { return whole(density, parts); }, lines);
 }
 
 std::vector<Span> cut(Span span, Span whole, const Panelling& panels) {

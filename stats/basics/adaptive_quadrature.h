@@ -4,7 +4,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
-#include <optional>
 #include <span>
 #include <type_traits>
 #include <vector>
@@ -99,14 +98,11 @@ class AdaptiveQuadrature {
   void forget_largest() { largest_ = 0; }
 
  private:
-  struct Part;
+  using Wholes = std::function<std::vector<Integral>(std::span<const Line>)>;
 
   Values counted(std::span<const double, nodes + 2> densities);
   std::vector<Integral> whole(const PlaneValues& density, std::span<const Line> lines);
-  void halve(const PlaneValues& density, std::vector<Part>& parts, std::size_t first, bool ended);
-  std::optional<std::vector<Integral>> side_by_side(const PlaneValues& density,
-                                                    std::span<const Line> lines);
-  Integral refined(const Function& function, Span span, Integral whole, int depth);
+  std::vector<Integral> refined(const Wholes& whole, std::span<const Line> lines);
 
   QuadratureLimits limits_;
   std::uint64_t used_ = 0;
