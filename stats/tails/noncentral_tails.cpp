@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <boost/math/quadrature/gauss.hpp>
 #include <cmath>
 
 #include "stats/basics/check.h"
@@ -124,42 +123,26 @@ double maximise(const UpperIntegrand& f, double low, double high) {
   return maximum(f, low, high, static_cast<int>(digits)).place;
 }
 
-double support_edge(const UpperIntegrand& f, double centre, double direction) {
-  const double floor = f(centre) - negligible;
-  double step = 1 / std::sqrt(f.parameters.degrees);
-  while (f(centre + direction * step) > floor) step *= 1.2;
-  return centre + direction * step;
-}
-
-// The integral over the maximum from the centre to an edge, by Gauss's rule in panels. They begin
-// at the integrand's scale and double. For few degrees it falls slowly, like e^(nu u), on the side
-// of small s. Even steps would be a million there.
-double side_over_peak(const UpperIntegrand& f, double centre, double edge) {
-  using Rule = boost::math::quadrature::gauss<double, 20>;
-  const double peak = f(centre);
-  const auto over_peak = [&](double u) { return std::exp(f(u) - peak); };
-  const double whole = std::abs(edge - centre);
-  const double direction = edge > centre ? 1 : -1;
-  double sum = 0;
-  double begin = 0;
-  for (double width = scale_at(f, centre); begin < whole; width *= 2) {
-    const double end = std::min(whole, begin + width);
-    const double from = centre + direction * begin;
-    const double to = centre + direction * end;
-    sum += Rule::integrate(over_peak, std::min(from, to), std::max(from, to));
-    begin = end;
-  }
-  return sum;
-}
-
+// By the trapezoidal rule over w, u = centre + scale sinh w. So the integrand falls faster than any
+// exponential on both sides, and steps of 1/16 err by 1e-13. For few degrees it falls slowly over
+// u, like e^(nu u), on the side of small s.
 double log_noncentral_upper(double t, Noncentral parameters) {
+  constexpr double step = 1.0 / 16;
   const UpperIntegrand f{t, parameters};
   const double spread = 60 / std::sqrt(parameters.degrees) + 60 / parameters.degrees;
   const double centre = maximise(f, -spread - std::log1p(std::abs(t)), std::min(spread, 300.0));
-  const double sum = side_over_peak(f, centre, support_edge(f, centre, -1)) +
-                     side_over_peak(f, centre, support_edge(f, centre, +1));
+  const double scale = scale_at(f, centre);
+  const double peak = f(centre);
+  double sum = 1;
+  for (const double direction : {-1.0, 1.0}) {
+    double term = 1;
+    for (double w = step; term > 1e-18 * sum; w += step) {
+      term = std::exp(f(centre + direction * scale * std::sinh(w)) - peak) * std::cosh(w);
+      sum += term;
+    }
+  }
   const double half = parameters.degrees / 2;
-  return std::log(2.0) + special::log_gamma_prefix(half, half) + f(centre) + std::log(sum);
+  return std::log(2 * scale * step) + special::log_gamma_prefix(half, half) + peak + std::log(sum);
 }
 
 // The mixture has a hundred thousand terms and more beyond this. The saddlepoint's error is of
