@@ -1,5 +1,7 @@
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <functional>
 
 #include "stats/basics/check.h"
 #include "stats/basics/search.h"
@@ -14,7 +16,7 @@ constexpr double negligible = 46;
 // ---- Noncentral chi-square: a Poisson mixture of central laws
 
 // P(X >= x) = sum_j Poisson(j; ncp/2) Q(nu/2 + j, x/2), and P for the lower tail. Both factors are
-// log-concave in j. So the terms have one mode and can be bracketed by bisection.
+// log-concave in j. So the terms have one mode, and bisection finds it and the terms that count.
 struct PoissonMixture {
   double half_x;
   double half_degrees;
@@ -29,35 +31,6 @@ struct PoissonMixture {
   double log_term(double j) const { return log_weight(j) + log_central(j); }
 };
 
-double mode(const PoissonMixture& mixture) {
-  double low = 0;
-  double high = 2 * (mixture.rate + mixture.half_x) + 10;
-  while (high - low > 1) {
-    const double middle = std::floor((low + high) / 2);
-    const bool rising = mixture.log_term(middle + 1) > mixture.log_term(middle);
-    (rising ? low : high) = middle;
-  }
-  return mixture.log_term(high) > mixture.log_term(low) ? high : low;
-}
-
-// The index nearest the mode, in steps of `direction`, from which on the terms are negligible.
-double edge(const PoissonMixture& mixture, double centre, int direction) {
-  const double floor = mixture.log_term(centre) - negligible;
-  double inside = centre;
-  double step = 1;
-  double outside = centre + direction;
-  while (outside > 0 && mixture.log_term(outside) > floor) {
-    inside = outside;
-    step *= 2;
-    outside = std::max(0.0, centre + direction * step);
-  }
-  while (std::abs(outside - inside) > 1) {
-    const double middle = std::floor((inside + outside) / 2);
-    (mixture.log_term(middle) > floor ? inside : outside) = middle;
-  }
-  return std::max(0.0, outside);
-}
-
 // Sums from one edge to the other in the direction in which the central tail grows. All terms are
 // positive.
 //   Upwards:   Q(a+1, y) = Q(a, y) + y^a e^-y / Gamma(a+1).
@@ -65,12 +38,17 @@ double edge(const PoissonMixture& mixture, double centre, int direction) {
 // It carries the products weight x tail and weight x increment over the largest term. They stay in
 // range however small the tail; the factors alone would not.
 double log_mixture(const PoissonMixture& mixture) {
-  const double centre = mode(mixture);
-  const double low = edge(mixture, centre, -1);
-  const double high = edge(mixture, centre, +1);
-  const bool up = mixture.tail == Tail::upper;
-  const double peak = mixture.log_term(centre);
+  const auto log_term = [&](std::uint64_t j) { return mixture.log_term(static_cast<double>(j)); };
   const double y = mixture.half_x;
+  const auto far = static_cast<std::uint64_t>(std::min(4 * (mixture.rate + y) + 400, 0x1p62));
+  const auto mode =
+      smallest_whole(0, far, [&](std::uint64_t j) { return log_term(j + 1) <= log_term(j); });
+  const double peak = log_term(mode);
+  const auto counts = [&](std::uint64_t j) { return log_term(j) > peak - negligible; };
+  const double first = static_cast<double>(smallest_whole(0, mode, counts));
+  const double low = std::max(0.0, first - 1);
+  const double high = static_cast<double>(smallest_whole(mode, far, std::not_fn(counts)));
+  const bool up = mixture.tail == Tail::upper;
   double j = up ? low : high;
   double term = std::exp(mixture.log_term(j) - peak);
   const double shape = mixture.half_degrees + (up ? j : j - 1);
