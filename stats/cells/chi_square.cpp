@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <numeric>
 #include <utility>
@@ -13,8 +14,6 @@
 
 namespace assay::stats {
 namespace {
-
-constexpr const char* effect_over_cells = "effect size w over the cells";
 
 // The data's direction is stretched at most this much to the null effect.
 constexpr double most_stretched = 2;
@@ -86,26 +85,6 @@ LogTails CellEffect::tails(double null_effect) const {
       .lower = noncentral_chi_square_tails(moved(law, null_effect, plain), plain).lower,
       .upper = noncentral_chi_square_tails(moved(law, null_effect, skew), skew).upper,
   };
-}
-
-Interval effect_interval(const std::function<LogTails(double)>& tails, double start,
-                         double confidence) {
-  check::inside_unit({"effect_interval", "confidence"}, confidence);
-  const double log_tail = std::log((1 - confidence) / 2);
-  // Both tails are monotone in w. The low end is 0 when even w = 0 is not rejected from that side.
-  const auto end = [&](auto excess) {
-    if (excess(0.0) >= 0) return 0.0;
-    double high = start;
-    while (excess(high) < 0 && high < largest_effect) high *= 2;
-    if (high >= largest_effect) return std::numeric_limits<double>::infinity();
-    return root(excess, {0, high}, 44);
-  };
-  if (tails(0).lower < log_tail) {
-    constexpr double none = std::numeric_limits<double>::quiet_NaN();
-    return {none, none, confidence};
-  }
-  return {end([&](double w) { return tails(w).upper - log_tail; }),
-          end([&](double w) { return log_tail - tails(w).lower; }), confidence};
 }
 
 namespace {
@@ -267,13 +246,6 @@ TestResult chi_square_fit_effect(const ChiSquareFit& fit, double null_effect) {
       effect_tails(fit, cells, null_effect));
 }
 
-Interval chi_square_fit_interval(const ChiSquareFit& fit, double confidence) {
-  const CellEffect cells = cell_effect(fit);
-  const double start =
-      std::sqrt(std::max(0.0, cells.squared()) + 1 / static_cast<double>(fit.observations));
-  return effect_interval([&](double w) { return effect_tails(fit, cells, w); }, start, confidence);
-}
-
 namespace {
 
 constexpr double fewest_expected = 20;
@@ -309,11 +281,6 @@ std::vector<PooledPair> pooled(const TwoSampleCounts& counts, double enough) {
   if (pools.empty()) pools.emplace_back();
   absorb(pools.back(), open);
   return pools;
-}
-
-LogTails effect_tails(const ChiSquareStatistic& statistic, double effect) {
-  return noncentral_chi_square_tails(
-      statistic.value, {statistic.degrees_of_freedom, statistic.observations * effect * effect});
 }
 
 using Points = std::span<PlanePoint>;
@@ -362,15 +329,10 @@ double ChiSquareStatistic::effect() const {
 
 TestResult chi_square_effect(const ChiSquareStatistic& statistic, double null_effect) {
   check::non_negative({"chi_square_effect", "null_effect"}, null_effect);
-  const double noncentrality = statistic.observations * null_effect * null_effect;
-  return by_tails(statistic.value,
-                  {"noncentral-chi-square", {statistic.degrees_of_freedom, noncentrality}},
-                  effect_tails(statistic, null_effect));
-}
-
-Interval chi_square_effect_interval(const ChiSquareStatistic& statistic, double confidence) {
-  const double start = statistic.effect() + 1 / std::sqrt(statistic.observations);
-  return effect_interval([&](double w) { return effect_tails(statistic, w); }, start, confidence);
+  const Noncentral law{statistic.degrees_of_freedom,
+                       statistic.observations * null_effect * null_effect};
+  return by_tails(statistic.value, {"noncentral-chi-square", {law.degrees, law.noncentrality}},
+                  noncentral_chi_square_tails(statistic.value, law));
 }
 
 std::size_t SampledCells::index(PlanePoint point) const {
@@ -404,26 +366,51 @@ SampledCells sampled_cells(std::vector<PlanePoint> points, CellNumbers numbers) 
   return cells;
 }
 
-Evidence chi_square_evidence(const ChiSquareFit& fit) {
-  return {.estimate = fit.effect,
-          .at =
-              [fit](double w) {
-                return w == 0 ? fit.test : chi_square_fit_effect(fit, std::max(0.0, w));
-              },
-          .interval = [fit](double confidence) { return chi_square_fit_interval(fit, confidence); },
-          .quantity = effect_over_cells,
+namespace {
+
+// `at(w)` tests an effect w >= 0. Its upper p-value rises with w, and the lower one falls. `equal`
+// tests w = 0. The high end of the interval is sought from `start` on.
+Evidence evidence_of(double estimate, double start, const TestResult& equal,
+                     const std::function<TestResult(double)>& at) {
+  const auto interval = [=](double confidence) -> Interval {
+    check::inside_unit({"chi_square_evidence", "confidence"}, confidence);
+    const double log_tail = std::log((1 - confidence) / 2);
+    // The low end is 0 when even w = 0 is not rejected from that side.
+    const auto end = [&](auto excess) {
+      if (excess(0.0) >= 0) return 0.0;
+      double high = start;
+      while (excess(high) < 0 && high < largest_effect) high *= 2;
+      if (high >= largest_effect) return std::numeric_limits<double>::infinity();
+      return root(excess, {0, high}, 44);
+    };
+    if (at(0).log_p_lower < log_tail) {
+      constexpr double none = std::numeric_limits<double>::quiet_NaN();
+      return {none, none, confidence};
+    }
+    return {end([&](double w) { return at(w).log_p_upper - log_tail; }),
+            end([&](double w) { return log_tail - at(w).log_p_lower; }), confidence};
+  };
+  return {.estimate = estimate,
+          .at = [=](double w) { return w > 0 ? at(w) : equal; },
+          .interval = interval,
+          .quantity = "effect size w over the cells",
           .distance = true};
 }
 
+}  // namespace
+
+Evidence chi_square_evidence(const ChiSquareFit& fit) {
+  const double start = std::sqrt(std::max(0.0, cell_effect(fit).squared()) +
+                                 1 / static_cast<double>(fit.observations));
+  return evidence_of(fit.effect, start, fit.test,
+                     [fit](double w) { return chi_square_fit_effect(fit, w); });
+}
+
 Evidence chi_square_evidence(const ChiSquareTwoSample& fit) {
-  return {.estimate = fit.statistic.effect(),
-          .at = [fit](double w) { return w <= 0 ? fit.test : chi_square_effect(fit.statistic, w); },
-          .interval =
-              [statistic = fit.statistic](double confidence) {
-                return chi_square_effect_interval(statistic, confidence);
-              },
-          .quantity = effect_over_cells,
-          .distance = true};
+  const ChiSquareStatistic& statistic = fit.statistic;
+  const double start = statistic.effect() + 1 / std::sqrt(statistic.observations);
+  return evidence_of(statistic.effect(), start, fit.test,
+                     [statistic](double w) { return chi_square_effect(statistic, w); });
 }
 
 }  // namespace assay::stats

@@ -2,7 +2,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <span>
 #include <vector>
 
@@ -62,13 +61,6 @@ class CellEffect {
   double sum_squares_ = 0;  // Sum of d^2.
 };
 
-// Central interval of an effect w >= 0. `tails(w)` are the data's tails if w were the effect. The
-// upper one rises with w and the lower one falls. The low end is at least 0. The high end is sought
-// from `start` on, and infinite if no w is too large. Both ends are NaN if the lower tail rejects
-// even w = 0: such data are closer to the null law than chance allows.
-Interval effect_interval(const std::function<LogTails(double)>& tails, double start,
-                         double confidence);
-
 // Observed counts, and the null law's probability of every cell. Probabilities sum to 1, so mass
 // that yields no point is a cell of its own. The bounds `error` on their errors are empty if they
 // are exact. All three have one length.
@@ -123,11 +115,9 @@ ChiSquareFit chi_square_fit(const CellCounts& counts, FitOptions options = {});
 // std::domain_error below 4 observations.
 TestResult chi_square_fit_effect(const ChiSquareFit& fit, double null_effect);
 
-// Central interval of w by effect_interval(). Both ends are NaN if no w is
-// left.
-Interval chi_square_fit_interval(const ChiSquareFit& fit, double confidence);
-
-// Evidence about w; about w = 0 by chi_square_fit's own test.
+// Evidence about w; about w = 0 by chi_square_fit's own test. The interval is central, from 0 on.
+// Its high end is infinite if no w is too large. Both ends are NaN if the lower tail rejects even
+// w = 0: such data are closer to the null law than chance allows.
 Evidence chi_square_evidence(const ChiSquareFit& fit);
 
 // Counts of two independent samples in the same cells. The cells are fixed beforehand, or chosen
@@ -177,10 +167,7 @@ ChiSquareTwoSample chi_square_two_sample(const TwoSampleCounts& counts);
 // for a negative null_effect.
 TestResult chi_square_effect(const ChiSquareStatistic& statistic, double null_effect);
 
-// Central interval of w: effect_interval().
-Interval chi_square_effect_interval(const ChiSquareStatistic& statistic, double confidence);
-
-// Evidence about w; about w = 0 by chi_square_two_sample's own test.
+// The same of two samples; about w = 0 by chi_square_two_sample's own test.
 Evidence chi_square_evidence(const ChiSquareTwoSample& fit);
 
 // A value of two coordinates; of one coordinate the second is 0.

@@ -72,12 +72,13 @@ TEST(ChiSquareFit, ImpossibleObservationsAreAnEffectThatNoAllowanceCovers) {
   const TestResult small = chi_square_fit_effect(fit, .1);
   EXPECT_LT(small.log_p_upper, std::log(1e-9));
   EXPECT_NEAR(small.log_p_lower, 0, 1e-12);
-  const Interval interval = chi_square_fit_interval(fit, .98);
+  const Interval interval = chi_square_evidence(fit).interval(.98);
   EXPECT_GT(interval.low, 200);
   EXPECT_LT(interval.high, 500);
   const ChiSquareFit strict = chi_square_fit(counts, {.probability_tolerance = 0});
   EXPECT_EQ(strict.effect, std::numeric_limits<double>::infinity());
-  EXPECT_EQ(chi_square_fit_interval(strict, .98).high, std::numeric_limits<double>::infinity());
+  EXPECT_EQ(chi_square_evidence(strict).interval(.98).high,
+            std::numeric_limits<double>::infinity());
 }
 
 // Within the tolerance, quadrature may have missed them.
@@ -118,7 +119,7 @@ TEST(ChiSquareFit, DataTooCloseToTheLawHaveNoIntervalRatherThanOneOfNoWidth) {
   const CellCounts even{.observed = std::vector<std::uint64_t>(100, 100),
                         .probability = std::vector<double>(100, .01)};
   const ChiSquareFit fit = chi_square_fit(even);
-  const Interval interval = chi_square_fit_interval(fit, .92);
+  const Interval interval = chi_square_evidence(fit).interval(.92);
   EXPECT_TRUE(std::isnan(interval.low) && std::isnan(interval.high)) << interval.high;
   // The test at an effect stands: a large one is excluded.
   EXPECT_LT(chi_square_fit_effect(fit, .1).log_p_lower, std::log(.01));
@@ -132,12 +133,13 @@ TEST(ChiSquareFit, TheEffectMovesTheNullAndTheIntervalInvertsIt) {
   const double pairs = 700 * 699 + 300 * 299 + 2 * 500 * 499;
   EXPECT_NEAR(fit.effect, std::sqrt(pairs / (2000 * 1999 * .25) - 1), 1e-12);
   EXPECT_NEAR(chi_square_fit_effect(fit, 0).log_p_upper / fit.test.log_p_upper, 1, .01);
-  const Interval interval = chi_square_fit_interval(fit, .98);
+  const Interval interval = chi_square_evidence(fit).interval(.98);
   EXPECT_LT(interval.low, fit.effect);
   EXPECT_GT(interval.high, fit.effect);
   EXPECT_NEAR(chi_square_fit_effect(fit, interval.low).log_p_upper, std::log(.01), 1e-6);
   EXPECT_NEAR(chi_square_fit_effect(fit, interval.high).log_p_lower, std::log(.01), 1e-6);
-  EXPECT_EQ(chi_square_fit_interval(chi_square_fit(golden(), {.minimum_expected = 5}), .98).low, 0);
+  const ChiSquareFit small = chi_square_fit(golden(), {.minimum_expected = 5});
+  EXPECT_EQ(chi_square_evidence(small).interval(.98).low, 0);
 }
 
 }  // namespace
