@@ -2,14 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <limits>
 #include <numeric>
 #include <utility>
 
 #include "stats/basics/check.h"
 #include "stats/basics/scores.h"
-#include "stats/basics/search.h"
 #include "stats/tails/special.h"
 
 namespace assay::stats {
@@ -18,8 +16,7 @@ namespace {
 // The data's direction is stretched at most this much to the null effect.
 constexpr double most_stretched = 2;
 
-// Larger than the reciprocal root of any cell's probability: counts as infinite.
-constexpr double largest_effect = 1e12;
+constexpr const char* effect_over_cells = "effect size w over the cells";
 
 double variance_of(Noncentral law) { return 2 * (law.degrees + 2 * law.noncentrality); }
 
@@ -366,51 +363,22 @@ SampledCells sampled_cells(std::vector<PlanePoint> points, CellNumbers numbers) 
   return cells;
 }
 
-namespace {
-
-// `at(w)` tests an effect w >= 0. Its upper p-value rises with w, and the lower one falls. `equal`
-// tests w = 0. The high end of the interval is sought from `start` on.
-Evidence evidence_of(double estimate, double start, const TestResult& equal,
-                     const std::function<TestResult(double)>& at) {
-  const auto interval = [=](double confidence) -> Interval {
-    check::inside_unit({"chi_square_evidence", "confidence"}, confidence);
-    const double log_tail = std::log((1 - confidence) / 2);
-    // The low end is 0 when even w = 0 is not rejected from that side.
-    const auto end = [&](auto excess) {
-      if (excess(0.0) >= 0) return 0.0;
-      double high = start;
-      while (excess(high) < 0 && high < largest_effect) high *= 2;
-      if (high >= largest_effect) return std::numeric_limits<double>::infinity();
-      return root(excess, {0, high}, 44);
-    };
-    if (at(0).log_p_lower < log_tail) {
-      constexpr double none = std::numeric_limits<double>::quiet_NaN();
-      return {none, none, confidence};
-    }
-    return {end([&](double w) { return at(w).log_p_upper - log_tail; }),
-            end([&](double w) { return log_tail - at(w).log_p_lower; }), confidence};
-  };
-  return {.estimate = estimate,
-          .at = [=](double w) { return w > 0 ? at(w) : equal; },
-          .interval = interval,
-          .quantity = "effect size w over the cells",
-          .distance = true};
-}
-
-}  // namespace
-
 Evidence chi_square_evidence(const ChiSquareFit& fit) {
-  const double start = std::sqrt(std::max(0.0, cell_effect(fit).squared()) +
-                                 1 / static_cast<double>(fit.observations));
-  return evidence_of(fit.effect, start, fit.test,
-                     [fit](double w) { return chi_square_fit_effect(fit, w); });
+  return distance_evidence({.quantity = effect_over_cells,
+                            .estimate = fit.effect,
+                            .equal = fit.test,
+                            .at = [fit](double w) { return chi_square_fit_effect(fit, w); },
+                            .start = std::sqrt(std::max(0.0, cell_effect(fit).squared()) +
+                                               1 / static_cast<double>(fit.observations))});
 }
 
 Evidence chi_square_evidence(const ChiSquareTwoSample& fit) {
   const ChiSquareStatistic& statistic = fit.statistic;
-  const double start = statistic.effect() + 1 / std::sqrt(statistic.observations);
-  return evidence_of(statistic.effect(), start, fit.test,
-                     [statistic](double w) { return chi_square_effect(statistic, w); });
+  return distance_evidence({.quantity = effect_over_cells,
+                            .estimate = statistic.effect(),
+                            .equal = fit.test,
+                            .at = [statistic](double w) { return chi_square_effect(statistic, w); },
+                            .start = statistic.effect() + 1 / std::sqrt(statistic.observations)});
 }
 
 }  // namespace assay::stats

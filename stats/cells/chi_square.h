@@ -115,9 +115,7 @@ ChiSquareFit chi_square_fit(const CellCounts& counts, FitOptions options = {});
 // std::domain_error below 4 observations.
 TestResult chi_square_fit_effect(const ChiSquareFit& fit, double null_effect);
 
-// Evidence about w; about w = 0 by chi_square_fit's own test. The interval is central, from 0 on.
-// Its high end is infinite if no w is too large. Both ends are NaN if the lower tail rejects even
-// w = 0: such data are closer to the null law than chance allows.
+// Evidence about w by distance_evidence; about w = 0 by chi_square_fit's own test.
 Evidence chi_square_evidence(const ChiSquareFit& fit);
 
 // Counts of two independent samples in the same cells. The cells are fixed beforehand, or chosen

@@ -8,7 +8,6 @@
 
 #include "stats/basics/check.h"
 #include "stats/basics/scores.h"
-#include "stats/basics/search.h"
 #include "stats/tails/kolmogorov.h"
 #include "stats/tails/special.h"
 
@@ -54,24 +53,6 @@ double effective_size(const LatticeDistance& lattice) {
   const double m = static_cast<double>(lattice.m);
   const double n = static_cast<double>(lattice.n);
   return m / (m + n) * n;
-}
-
-template <class Distance>
-Interval interval(const Distance& distance, double observed, double confidence) {
-  check::inside_unit({"ks_interval", "confidence"}, confidence);
-  const double log_tail = std::log((1 - confidence) / 2);
-  // "Delta <= low" is just rejected; "Delta >= high" is just rejected.
-  const auto low_excess = [&](double delta) {
-    return ks_margin(distance, delta).log_p_upper - log_tail;
-  };
-  const auto high_excess = [&](double delta) {
-    return log_tail - ks_margin(distance, delta).log_p_lower;
-  };
-  const double top = std::nextafter(1.0, 0.0);
-  const double low = low_excess(0) >= 0 ? 0 : root(low_excess, {0, std::min(observed, top)}, 40);
-  const double high =
-      high_excess(top) <= 0 ? 1 : root(high_excess, {std::min(observed, top), top}, 40);
-  return {low, high, confidence};
 }
 
 void check_null(double null_distance) {
@@ -227,14 +208,6 @@ TestResult ks_margin(const TwoSampleDistance& distance, double null_distance) {
           {"bound", {}},
           log_hoeffding(null_distance - observed, effective_size(lattice)),
           upper};
-}
-
-Interval ks_interval(const OneSampleDistance& distance, double confidence) {
-  return interval(distance, distance.distance, confidence);
-}
-
-Interval ks_interval(const TwoSampleDistance& distance, double confidence) {
-  return interval(distance, distance.distance(), confidence);
 }
 
 TwoLawsTest two_part_ks(std::span<const double> sorted_x, std::span<const double> sorted_y,

@@ -60,11 +60,6 @@ TestResult kolmogorov_smirnov(const TwoSampleDistance& distance);
 TestResult ks_margin(const OneSampleDistance& distance, double null_distance);
 TestResult ks_margin(const TwoSampleDistance& distance, double null_distance);
 
-// Central interval of Delta within [0, 1]. It holds the null distances that ks_margin rejects in
-// neither direction at (1 - confidence) / 2 each.
-Interval ks_interval(const OneSampleDistance& distance, double confidence);
-Interval ks_interval(const TwoSampleDistance& distance, double confidence);
-
 // ---- Two samples with a frequent value
 
 // A value that many of both samples share: a black pixel, a clamped value.

@@ -14,8 +14,6 @@
 namespace assay::stats {
 namespace {
 
-constexpr const char* distance_of_laws = "largest distance between distribution functions";
-
 /// Says which part decides: the estimate may be another's.
 std::string decisive_part(const std::string& part, double difference) {
   std::ostringstream text;
@@ -23,48 +21,45 @@ std::string decisive_part(const std::string& part, double difference) {
   return text.str();
 }
 
-/// Evidence from a sup distance that the law's table leaves uncertain by `error`.
-Evidence from_distance(const OneSampleDistance& measured, double error) {
+/// Evidence about a sup distance, which is less than 1.
+Evidence from_distance(double distance, const TestResult& equal,
+                       const std::function<TestResult(double)>& margin) {
+  const double largest = std::nextafter(1.0, 0.0);
+  return distance_evidence({.quantity = "largest distance between distribution functions",
+                            .estimate = distance,
+                            .equal = equal,
+                            .at = [=](double theta) { return margin(std::min(theta, largest)); },
+                            .start = std::max(distance, 1e-9),
+                            .largest = largest,
+                            .beyond = 1});
+}
+
+/// The law's table leaves the distance uncertain by `error`.
+Evidence from_law(const OneSampleDistance& measured, double error) {
   OneSampleDistance least = measured;
   OneSampleDistance most = measured;
   least.distance = std::max(0.0, measured.distance - error);
   most.distance = std::min(1.0, measured.distance + error);
-  // Computed once: it is slow.
-  const TestResult at_none = kolmogorov_smirnov(least);
-  const auto at = [least, most, at_none](double theta) {
-    if (theta <= 0) return at_none;
+  return from_distance(measured.distance, kolmogorov_smirnov(least), [=](double theta) {
     TestResult result = ks_margin(least, theta);
     result.log_p_lower = ks_margin(most, theta).log_p_lower;
     return result;
-  };
-  const auto interval = [least, most](double confidence) -> Interval {
-    return {ks_interval(least, confidence).low, ks_interval(most, confidence).high, confidence};
-  };
-  return {.estimate = measured.distance,
-          .at = at,
-          .interval = interval,
-          .quantity = distance_of_laws,
-          .distance = true};
+  });
 }
 
-Evidence from_distance(std::span<const double> x, std::span<const double> y) {
+Evidence from_samples(std::span<const double> x, std::span<const double> y) {
   const TwoSampleDistance distance = ks_distance(x, y);
   const TwoLawsTest at_none = two_part_ks(x, y, distance);
-  const auto at = [distance, none = at_none.result](double theta) {
-    return theta <= 0 ? none : ks_margin(distance, theta);
-  };
+  Evidence evidence = from_distance(distance.distance(), at_none.result, [distance](double theta) {
+    return ks_margin(distance, theta);
+  });
   // The bound of a margin may reach 0 where the exact test rejects it. The interval is open there.
-  const auto interval = [distance, at](double confidence) {
-    Interval found = ks_interval(distance, confidence);
+  evidence.interval = [closed = evidence.interval, at = evidence.at](double confidence) {
+    Interval found = closed(confidence);
     if (found.low == 0 && at(0).log_p_upper < std::log((1 - confidence) / 2))
       found.low = std::numeric_limits<double>::min();
     return found;
   };
-  Evidence evidence{.estimate = distance.distance(),
-                    .at = at,
-                    .interval = interval,
-                    .quantity = distance_of_laws,
-                    .distance = true};
   if (at_none.common && at_none.common->decides) {
     std::ostringstream part;
     part << "the values at " << at_none.common->value;  // in 6 digits
@@ -148,7 +143,7 @@ void require_points(const Points& points) {
 
 Evidence points_against_law(const Points& points, const DeclaredLaw& declared) {
   require_points(points);
-  const Evidence rest = from_distance(ks_distance(points.sorted, declared.law), declared.error);
+  const Evidence rest = from_law(ks_distance(points.sorted, declared.law), declared.error);
   if (declared.missing == 0 && points.missing() == 0) return rest;
   const Successes missing{.successes = points.missing(), .trials = points.draws};
   const Evidence excess = probability_evidence(missing, -declared.missing, declared.missing_error);
@@ -158,7 +153,7 @@ Evidence points_against_law(const Points& points, const DeclaredLaw& declared) {
 Evidence points_against_points(const Points& x, const Points& y) {
   require_points(x);
   require_points(y);
-  const Evidence rest = from_distance(x.sorted, y.sorted);
+  const Evidence rest = from_samples(x.sorted, y.sorted);
   if (!x.of_a_sampler && !y.of_a_sampler) return rest;
   return larger_of(rest, absolute(from_probabilities(x, y)));
 }

@@ -4,7 +4,37 @@
 #include <cmath>
 #include <numbers>
 
+#include "stats/basics/check.h"
+#include "stats/basics/search.h"
+
 namespace assay::stats {
+
+Evidence distance_evidence(const DistanceTest& test) {
+  const auto interval = [test](double confidence) -> Interval {
+    check::inside_unit({"distance_evidence", "confidence"}, confidence);
+    const double log_tail = std::log((1 - confidence) / 2);
+    const auto end = [&](const Curve& excess) {
+      if (excess(0) >= 0) return 0.0;
+      double high = std::min(test.start, test.largest);
+      while (excess(high) < 0) {
+        if (high == test.largest) return test.beyond;
+        high = std::min(2 * high, test.largest);
+      }
+      return root(excess, {0, high}, 44);
+    };
+    if (test.at(0).log_p_lower < log_tail) {
+      constexpr double none = std::numeric_limits<double>::quiet_NaN();
+      return {none, none, confidence};
+    }
+    return {end([&](double theta) { return test.at(theta).log_p_upper - log_tail; }),
+            end([&](double theta) { return log_tail - test.at(theta).log_p_lower; }), confidence};
+  };
+  return {.estimate = test.estimate,
+          .at = [test](double theta) { return theta > 0 ? test.at(theta) : test.equal; },
+          .interval = interval,
+          .quantity = test.quantity,
+          .distance = true};
+}
 
 Evidence absolute(const Evidence& of_theta) {
   const auto at = [at = of_theta.at](double theta) {

@@ -1,5 +1,6 @@
 #include "stats/laws/kolmogorov_smirnov.h"
 
+#include "stats/tails/evidence.h"
 #include "tests/stats/prelude.h"
 
 namespace assay::stats {
@@ -65,17 +66,23 @@ TEST(KolmogorovSmirnov, MarginsMoveBothTailsMonotonically) {
   EXPECT_NEAR(ks_margin(one, .3).log_p_lower, -2 * 500 * .04, 1e-9);
 }
 
+Interval interval_of(const auto& distance, double estimate) {
+  const auto at = [&](double theta) { return ks_margin(distance, std::min(theta, .999999)); };
+  return distance_evidence({.at = at, .start = estimate, .largest = .999999, .beyond = 1})
+      .interval(.98);
+}
+
 TEST(KolmogorovSmirnov, IntervalEndsAreJustRejected) {
   const OneSampleDistance one{.2, 500};
-  const Interval interval = ks_interval(one, .98);
+  const Interval interval = interval_of(one, .2);
   EXPECT_NEAR(ks_margin(one, interval.low).log_p_upper, std::log(.01), 1e-6);
   EXPECT_NEAR(ks_margin(one, interval.high).log_p_lower, std::log(.01), 1e-6);
   const TwoSampleDistance two{.lattice = {300, 1000, 1000}};
-  const Interval wider = ks_interval(two, .98);
+  const Interval wider = interval_of(two, two.distance());
   EXPECT_NEAR(ks_margin(two, wider.low).log_p_upper, std::log(.01), 1e-6);
   EXPECT_NEAR(ks_margin(two, wider.high).log_p_lower, std::log(.01), 1e-6);
-  EXPECT_EQ(ks_interval(OneSampleDistance{.01, 500}, .98).low, 0);
-  EXPECT_EQ(ks_interval(OneSampleDistance{.9, 5}, .98).high, 1);
+  EXPECT_EQ(interval_of(OneSampleDistance{.01, 500}, .01).low, 0);
+  EXPECT_EQ(interval_of(OneSampleDistance{.9, 5}, .9).high, 1);
 }
 
 // Zero with this probability, uniform otherwise.

@@ -71,14 +71,15 @@ TEST(LawEvidence, AnIntervalReachesAsFarAsThatOfEitherPart) {
   const Points whole = uniform_points(3000, 0, random);
   for (const std::uint64_t missing : {0u, 150u, 1500u}) {
     const Points points = uniform_points(3000, missing, random);
-    const auto distance = ks_distance(points.sorted, whole.sorted);
+    const Evidence of_points =
+        points_against_points({.sorted = points.sorted}, {.sorted = whole.sorted});
     const TwoValued one{.range = {0, 1}, .high = {.successes = missing, .trials = 3000}};
     const TwoValued other{.range = {0, 1}, .high = {.successes = 0, .trials = 3000}};
     const auto low = two_valued_difference_interval(one, other, halved).low;
     const auto high = two_valued_difference_interval(one, other, confidence).high;
     const Interval found = points_against_points(points, whole).interval(confidence);
-    EXPECT_EQ(found.low, std::max(ks_interval(distance, halved).low, low)) << missing;
-    EXPECT_EQ(found.high, std::max(ks_interval(distance, confidence).high, high)) << missing;
+    EXPECT_EQ(found.low, std::max(of_points.interval(halved).low, low)) << missing;
+    EXPECT_EQ(found.high, std::max(of_points.interval(confidence).high, high)) << missing;
   }
 }
 
