@@ -113,8 +113,6 @@ Moments moments_of(const JointMoments& joint, const JointMoments::Coordinate& co
 
 }  // namespace
 
-void JointMoments::Coordinate::move_mean(double step) { move_compensated(step, mean, rest); }
-
 void JointMoments::merge(const JointMoments& other) {
   if (other.count == 0) return;
   if (count == 0) {
@@ -129,7 +127,7 @@ void JointMoments::merge(const JointMoments& other) {
     const double step = (coordinate.mean - ours.mean) + (coordinate.rest - ours.rest);
     move_origin(sums, along, -step * share);
     move_origin(theirs, along, step * (1 - share));
-    ours.move_mean(step * share);
+    move_compensated(step * share, ours.mean, ours.rest);
     ours.minimum = std::min(ours.minimum, coordinate.minimum);
     ours.maximum = std::max(ours.maximum, coordinate.maximum);
   };
@@ -192,9 +190,9 @@ JointMoments JointSums::of_waiting() const {
     part.of_cost.maximum = std::max(part.of_cost.maximum, pair.cost);
   }
   part.of_x.mean = first.x;
-  part.of_x.move_mean(sum_x / n);
+  move_compensated(sum_x / n, part.of_x.mean, part.of_x.rest);
   part.of_cost.mean = first.cost;
-  part.of_cost.move_mean(sum_cost / n);
+  move_compensated(sum_cost / n, part.of_cost.mean, part.of_cost.rest);
   Deviations deviations;
   deviations.count = (waiting_.size() + lanes - 1) / lanes * lanes;
   for (std::size_t k = 0; k < waiting_.size(); ++k) {

@@ -25,7 +25,6 @@ struct JointMoments {
     double minimum = std::numeric_limits<double>::infinity();
     double maximum = -std::numeric_limits<double>::infinity();
 
-    void move_mean(double step);
     friend bool operator==(const Coordinate&, const Coordinate&) = default;
   };
 

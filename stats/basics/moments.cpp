@@ -22,7 +22,7 @@ void Moments::merge(const Moments& other) {
         6 * step2 * (a * a * other.m2 + b * b * m2) + 4 * step * (a * other.m3 - b * m3);
   m3 += other.m3 + delta * step2 * a * b * (a - b) + 3 * step * (a * other.m2 - b * m2);
   m2 += other.m2 + delta * step * a * b;
-  move_mean(step * b);
+  move_compensated(step * b, mean, rest);
   count += other.count;
   minimum = std::min(minimum, other.minimum);
   maximum = std::max(maximum, other.maximum);

@@ -57,7 +57,6 @@ struct Moments {
   friend bool operator==(const Moments&, const Moments&) = default;
 
   void refuse_variance() const;  // Throws for fewer than two values.
-  void move_mean(double step);
 };
 
 // Moves a mean that keeps in `rest` what rounding takes from it (Kahan 1965).
@@ -67,8 +66,6 @@ inline void move_compensated(double step, double& mean, double& rest) {
   rest = added - (moved - mean);
   mean = moved;
 }
-
-inline void Moments::move_mean(double step) { move_compensated(step, mean, rest); }
 
 inline void Moments::add(double value) {
   const double before = static_cast<double>(count);
@@ -84,7 +81,7 @@ inline void Moments::add(double value) {
   m4 += term * step2 * (n * n - 3 * n + 3) + 6 * step2 * m2 - 4 * step * m3;
   m3 += term * step * (n - 2) - 3 * step * m2;
   m2 += term;
-  move_mean(step);
+  move_compensated(step, mean, rest);
   minimum = std::min(minimum, value);
   maximum = std::max(maximum, value);
   nonzero += value != 0;

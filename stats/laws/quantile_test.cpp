@@ -173,11 +173,10 @@ Evidence quantile_evidence(std::vector<double> sorted, double probability, doubl
               [=](double theta) {
                 return quantile_test(count_around(*values, null + theta * unit), probability);
               },
-          .interval =
-              [=](double confidence) {
-                return map_ends(quantile_interval(*values, probability, confidence),
-                                [=](double value) { return (value - null) / unit; });
-              }};
+          .interval = [=](double confidence) -> Interval {
+            const Interval of = quantile_interval(*values, probability, confidence);
+            return {(of.low - null) / unit, (of.high - null) / unit, confidence};
+          }};
 }
 
 Evidence quantile_evidence(std::vector<double> sorted_x, std::vector<double> sorted_y,

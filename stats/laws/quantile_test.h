@@ -51,8 +51,8 @@ Interval quantile_difference_interval(std::span<const double> sorted_x,
                                       std::span<const double> sorted_y, double probability,
                                       double confidence);
 
-// Evidence about theta = (quantile - null) / unit, and about theta = Q(x) - Q(y). Values are
-// sorted.
+// Evidence about theta = (quantile - null) / unit, unit > 0, and about theta = Q(x) - Q(y). Values
+// are sorted.
 Evidence quantile_evidence(std::vector<double> sorted, double probability, double null,
                            double unit);
 Evidence quantile_evidence(std::vector<double> sorted_x, std::vector<double> sorted_y,

@@ -23,26 +23,23 @@ class Power {
         rates_(rates),
         critical_(student_t_quantile(critical_tail(rates), scale.degrees)) {}
 
-  double at(EffectPlan effect) const { return std::min(near(effect) + far(effect), 1.0); }
+  // The far side is the near one of the mirrored estimate.
+  double at(EffectPlan effect) const {
+    const double near = tail(effect.detect - effect.allow, scale_.a);
+    const double far = rates_.two_sided ? tail(-effect.detect - effect.allow, -scale_.a) : 0;
+    return std::min(near + far, 1.0);
+  }
 
  private:
-  // Power is monotone in it, and 1 to the last digit a hundred critical values away. Farther out
-  // only rounding is left of the integrals.
-  double noncentrality(double effect) const {
+  // P(T and T_H exceed the critical value) of an effect. It is monotone in the noncentrality, and 1
+  // to the last digit a hundred critical values away. Farther out only rounding is left of the
+  // integrals.
+  double tail(double effect, double a) const {
     const double most = 100 * std::max(1.0, std::abs(critical_));
     const double t = std::clamp(effect / scale_.standard_error, -most, most);
-    return std::clamp(without_skewness(t, scale_.a) - scale_.a, -most, most);
-  }
-  double near(EffectPlan effect) const {
-    const double up = noncentrality(effect.detect - effect.allow);
-    const double both = std::max(critical_, without_skewness(critical_, scale_.a));
-    return std::exp(noncentral_t_tails(both, {scale_.degrees, up}).upper);
-  }
-  double far(EffectPlan effect) const {
-    if (!rates_.two_sided) return 0;
-    const double down = noncentrality(effect.detect + effect.allow);
-    const double both = std::min(-critical_, without_skewness(-critical_, scale_.a));
-    return std::exp(noncentral_t_tails(both, {scale_.degrees, down}).lower);
+    const double noncentrality = std::clamp(without_skewness(t, a) - a, -most, most);
+    const double both = std::max(critical_, without_skewness(critical_, a));
+    return std::exp(noncentral_t_tails(both, {scale_.degrees, noncentrality}).upper);
   }
 
   Studentised scale_;

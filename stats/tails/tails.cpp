@@ -325,10 +325,4 @@ Interval interval_by_inversion(const std::function<TestResult(double)>& at,
   return {end_of(below, around, -1), end_of(above, around, 1), confidence};
 }
 
-Interval map_ends(const Interval& interval, const std::function<double(double)>& map) {
-  const double one = map(interval.low);
-  const double other = map(interval.high);
-  return {std::min(one, other), std::max(one, other), interval.confidence};
-}
-
 }  // namespace assay::stats

@@ -58,7 +58,4 @@ struct Whereabouts {
 Interval interval_by_inversion(const std::function<TestResult(double)>& at,
                                const Whereabouts& around, double confidence);
 
-// The interval of a monotone function of the number, rising or falling.
-Interval map_ends(const Interval& interval, const std::function<double(double)>& map);
-
 }  // namespace assay::stats
