@@ -13,35 +13,17 @@
 #include "stats/basics/check.h"
 #include "stats/basics/scores.h"
 #include "stats/basics/search.h"
-#include "stats/tails/tails.h"
+#include "stats/tails/special.h"
 
 namespace assay::stats {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-// The smallest k with P(K <= k) > e^log_level, the lower critical count.
-std::uint64_t smallest_kept(Trials trials, double log_level) {
-  return smallest_whole(0, trials.trials, [&](std::uint64_t count) {
-    return binomial_lower(count, trials) > log_level;
-  });
-}
-
-std::uint64_t largest_kept(Trials trials, double log_level) {
-  return trials.trials - smallest_kept({trials.trials, 1 - trials.probability}, log_level);
-}
-
 using Sorted = std::span<const double>;
 
 double sample_quantile(Sorted sorted, double probability) {
   return sorted[sample_quantile_rank(sorted.size(), probability)];
-}
-
-// ln of Fisher's combination of two independent p-values: c (1 - ln c).
-double log_fisher(double log_product) {
-  constexpr double lowest = std::numeric_limits<double>::lowest();
-  if (log_product <= lowest) return lowest;
-  return std::min(0.0, log_product + std::log1p(-log_product));
 }
 
 std::vector<double> moved(Sorted sorted, double offset) {
@@ -89,7 +71,10 @@ class LargestProduct {
 };
 
 double log_p_below(Sorted lower, Sorted upper, double probability) {
-  return log_fisher(LargestProduct(lower, upper, probability).logarithm());
+  const double log_c =
+      std::max(special::lowest_log(), LargestProduct(lower, upper, probability).logarithm());
+  // Fisher's combination of two independent p-values: c (1 - ln c).
+  return special::clamp_log(log_c + std::log1p(-log_c));
 }
 
 }  // namespace
@@ -118,12 +103,18 @@ Interval quantile_interval(std::span<const double> sorted, double probability, d
   check::sorted("quantile_interval", sorted);
   check::inside_unit({"quantile_interval", "probability"}, probability);
   check::inside_unit({"quantile_interval", "confidence"}, confidence);
-  const Trials trials{sorted.size(), probability};
+  const std::uint64_t n = sorted.size();
   const double log_level = std::log((1 - confidence) / 2);
-  const std::uint64_t fewest = smallest_kept(trials, log_level);
-  const std::uint64_t most = largest_kept(trials, log_level);
-  return {fewest == 0 ? -infinity : sorted[fewest - 1],
-          most == trials.trials ? infinity : sorted[most], confidence};
+  // The smallest k with P(K <= k) above the level, the lower critical count.
+  const auto smallest_kept = [&](double p) {
+    return smallest_whole(0, n, [&](std::uint64_t count) {
+      return binomial_lower(count, {n, p}) > log_level;
+    });
+  };
+  const std::uint64_t fewest = smallest_kept(probability);
+  const std::uint64_t most = n - smallest_kept(1 - probability);
+  return {fewest == 0 ? -infinity : sorted[fewest - 1], most == n ? infinity : sorted[most],
+          confidence};
 }
 
 TestResult quantile_compare(std::span<const double> sorted_x, std::span<const double> sorted_y,
