@@ -81,8 +81,8 @@ RepeatedRun run_through(std::span<const double> a, std::size_t i, std::span<cons
   return {.first = i, .second = j, .length = length};
 }
 
-// A run of the second sample that the first one has, among so many pairs of places; of one sample,
-// a run that it has before.
+// A run of the second sample that the first one has, among so many pairs of places. If they are one
+// sample, it has the run before.
 std::optional<RepeatedRun> run_again(std::span<const double> first, std::span<const double> second,
                                      double pairs, bool of_one) {
   // Many windows of one hash are a short pattern over and over, and one of them will do.

@@ -30,8 +30,8 @@ struct Evidence {
 struct DistanceTest {
   std::string quantity;
   double estimate = 0;
-  TestResult equal;                      // Of theta = 0.
-  std::function<TestResult(double)> at;  // Of a theta from 0 to the largest.
+  TestResult equal;                      // Tests theta = 0.
+  std::function<TestResult(double)> at;  // Tests a theta from 0 to the largest.
   double start = 1;                      // Ends of intervals are sought from here on.
   double largest = 1e12;
   double beyond = std::numeric_limits<double>::infinity();  // The end where no theta is too large.
