@@ -44,13 +44,22 @@ std::size_t stays_needed(double pairs) {
   return 1 + static_cast<std::size_t>(std::ceil(std::max(2.0, std::log2(pairs / chance_of_run))));
 }
 
-std::size_t hash_of(std::span<const Stay> window) {
-  std::size_t hash = 0;
-  for (const Stay& stay : window) {
-    boost::hash_combine(hash, stay.length);
+// Hashes of all windows of so many stays (Karp & Rabin 1987).
+std::vector<std::size_t> hashes_of(const Stays& stays, std::size_t size) {
+  constexpr std::size_t factor = 0x9e3779b97f4a7c15;
+  std::size_t power = 1;
+  for (std::size_t i = 0; i < size; ++i) power *= factor;
+  std::vector<std::size_t> from_first{0};
+  for (const Stay& stay : stays) {
+    std::size_t hash = stay.length;
     boost::hash_combine(hash, std::bit_cast<std::uint64_t>(stay.value));
+    from_first.push_back(from_first.back() * factor + hash);
   }
-  return hash;
+  std::vector<std::size_t> hashes;
+  for (std::size_t i = size; i < from_first.size(); ++i) {
+    hashes.push_back(from_first[i] - from_first[i - size] * power);
+  }
+  return hashes;
 }
 
 // Neighbours differ. So a third value is not that two before it.
@@ -97,17 +106,18 @@ std::optional<RepeatedRun> run_again(std::span<const double> first, std::span<co
     if (!has_three_values(std::span(one).subspan(place, size))) return;
     if (anchors.count(hash) < most) anchors.emplace(hash, place);
   };
-  for (std::size_t i = 0; !of_one && i + size <= one.size(); i += size) {
-    add(i, hash_of(std::span(one).subspan(i, size)));
+  if (!of_one) {
+    const std::vector<std::size_t> hashes = hashes_of(one, size);
+    for (std::size_t i = 0; i < hashes.size(); i += size) add(i, hashes[i]);
   }
-  for (std::size_t i = 0; i + size <= two.size(); ++i) {
-    const std::size_t hash = hash_of(std::span(two).subspan(i, size));
-    const auto [begin, end] = anchors.equal_range(hash);
+  const std::vector<std::size_t> hashes = hashes_of(two, size);
+  for (std::size_t i = 0; i < hashes.size(); ++i) {
+    const auto [begin, end] = anchors.equal_range(hashes[i]);
     for (auto anchor = begin; anchor != end; ++anchor) {
       if (shared(one, anchor->second, two, i) < needed) continue;
       return run_through(first, one[anchor->second].begin, second, two[i].begin);
     }
-    if (of_one && i % size == 0) add(i, hash);
+    if (of_one && i % size == 0) add(i, hashes[i]);
   }
   return {};
 }
