@@ -9,10 +9,13 @@ mkdir one other
 of_one_thread() {
   "$assay" run "$1" --quiet --threads 1 "${@:2}" --report json=one/run.json --report console=/dev/null \
     2>err </dev/null
-  [ $? -le 3 ] || fail "assay run $1 failed"
+  [[ $? == [013] ]] || fail "assay run $1 failed"
 }
 # Kills at more times and of more ranks.
 long=${ASSAY_LONG-}
+# Suites are run whole then. Else they leave out what takes long to prepare, and planted bugs.
+part=(--filter '-*solid_angle.direction*' --filter '-*found*')
+[ -z "$long" ] || part=()
 same_as_of_one_thread() { diff <(timeless one/run.json) <(timeless other/run.json) >out || fail "$1: another record"; }
 
 test_killed_runs_go_on_to_the_same_record() {
@@ -36,16 +39,17 @@ test_killed_runs_go_on_to_the_same_record() {
 
 test_interrupted_run_goes_on() {
   local suite=$source_folder/suites/luminaire.yaml
-  of_one_thread "$suite" --coarsen 4
-  "$assay" run "$suite" --coarsen 4 --quiet --checkpoint kept --checkpoint-every .01 >/dev/null 2>err </dev/null &
+  of_one_thread "$suite" --coarsen 4 "${part[@]}"
+  "$assay" run "$suite" --coarsen 4 "${part[@]}" --quiet --checkpoint kept --checkpoint-every .01 \
+    >/dev/null 2>err </dev/null &
   until [ -s kept.kept ]; do sleep .01; done
   kill -TERM $!
   wait $!
   [ $? -eq 130 ] || fail 'not interrupted'
   contains err 'what was drawn is kept in kept and kept.kept; the same command continues'
-  expect 2 run "$suite" --coarsen 4 --seed 7 --checkpoint kept
+  expect 2 run "$suite" --coarsen 4 "${part[@]}" --seed 7 --checkpoint kept
   contains err "kept: is the checkpoint of another run: the seed was the suite's and is 7; remove it, or name another file"
-  "$assay" run "$suite" --coarsen 4 --quiet --checkpoint kept --report json=other/run.json >/dev/null 2>err
+  "$assay" run "$suite" --coarsen 4 "${part[@]}" --quiet --checkpoint kept --report json=other/run.json >/dev/null 2>err
   same_as_of_one_thread resumed
 }
 
@@ -95,9 +99,9 @@ test_ranks_give_the_record_of_one_process() {
   local suite n counts=(3)
   [ -z "$long" ] || counts=(1 2 3 4)
   for suite in "$source_folder"/{tests/suites/kinds,suites/luminaire,suites/images,suites/analytic}.yaml; do
-    of_one_thread "$suite" --coarsen 8
+    of_one_thread "$suite" --coarsen 8 "${part[@]}"
     for n in "${counts[@]}"; do
-      ranks "$n" run "$suite" --coarsen 8 --quiet --report json=other/run.json
+      ranks "$n" run "$suite" --coarsen 8 "${part[@]}" --quiet --report json=other/run.json
       [ $? -le 3 ] || fail "$n ranks of $suite"
       same_as_of_one_thread "$n ranks of $suite"
     done
@@ -108,10 +112,11 @@ test_ranks_give_the_record_of_one_process() {
 test_ranks_that_stall_are_done_without() {
   require_mpi
   local suite=$source_folder/suites/luminaire.yaml signal
-  of_one_thread "$suite" --coarsen 4
+  of_one_thread "$suite" --coarsen 3 "${part[@]}"
   for signal in STOP TERM; do
     rm -f kept kept.kept
-    ranks 3 run "$suite" --coarsen 4 --quiet --checkpoint kept --checkpoint-every .01 --report json=other/run.json &
+    ranks 3 run "$suite" --coarsen 3 "${part[@]}" --quiet --checkpoint kept --checkpoint-every .01 \
+      --report json=other/run.json &
     until [ "$(stat -c %s kept.kept 2>/dev/null)0" -gt 40000 ]; do sleep .01; done  # all ranks draw
     signal_rank $signal 2 $! || fail 'no rank'
     wait $!
