@@ -20,7 +20,7 @@ def cube(rng):
 def plain(rng):
     return float(rng.random() < 0.25)
 
-@assay.estimator(channels=["left", "right"], primaries=64)
+@assay.estimator(channels=["left", "right"], primaries=8)
 @assay.claim("mean(it.left) == 0.5", detect="2%")
 @assay.claim("mean(it.right) == 0.5", detect=0.01)
 @assay.claim("mean(it.left) == 1", expect="fail", name="the left is not the whole")
