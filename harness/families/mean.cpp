@@ -439,13 +439,60 @@ class MeanTheta : public Theta {
                                               const ErrorShare& share,
                                               const Pilots& pilots) const override {
     const Regions& regions = test.plan.regions[index];
-    const std::optional<PlannedChannel> channel = from_pilots(test, index, pilots);
-    if (!channel || !regions.detect) return std::nullopt;
+    const std::optional<PlannedChannel> channel = planned(test, index, pilots);
+    if (!channel) return std::nullopt;
+    if (channel->unit == 0 && regions.has_margin()) {
+      throw std::domain_error(
+          "the other mean is 0 in the pilot, and a margin in per cent of it means nothing; give "
+          "the margin as a number");
+    }
+    if (!regions.detect) return std::nullopt;
     const stats::ErrorRates rates = planned_rates(share, regions);
     if (!test.plan.method.is.plans) return secondaries_by_t(test.plan.method, rates, *channel);
     const auto count = exact_secondaries(test, *channel, rates);
     const std::uint64_t most = channel->unseen ? most_for_the_unseen : impossible_secondaries;
     return std::min(count.value_or(impossible_secondaries), most);
+  }
+
+  /// With the pilot's upper limit of the variance. Returns nullopt if the channel has no spread and
+  /// no range bounds what the pilot missed.
+  std::optional<PlannedChannel> planned(const TestOutcome& test, std::size_t channel,
+                                        const Pilots& pilots) const override {
+    const Question& question = test.question;
+    const Plan& plan = test.plan;
+    if (!all_piloted(question, pilots)) return std::nullopt;
+    PlannedChannel planned{.regions = plan.regions[channel]};
+    bool constant = true;
+    double other_mean = 0;
+    for (std::size_t i = 0; i < question.subjects.size(); ++i) {
+      const Moments moments = pilot_channel(question, i, channel, pilots).moments;
+      if (i == 0) note_range(question, channel, moments, planned);
+      if (i == 1) other_mean = moments.mean;
+      if (is_constant(question.subjects[i], channel, moments)) continue;
+      constant = false;
+      const double averaged = question.subjects[i].averaged(plan.primaries[i]);
+      planned.deviations[i] =
+          question.factor_of(i) * std::sqrt(stats::planned_variance(moments) / averaged);
+      planned.skewness[i] = question.sign_of(i) * moments.skewness() / std::sqrt(averaged);
+      const auto allowance = plan.row_allowances.find({i, channel});
+      if (allowance != plan.row_allowances.end()) {
+        planned.deviations[i] *= std::sqrt(allowance->second);
+      }
+    }
+    const bool bets = plan.method.is.in_range && !question.of_two();
+    planned.unseen = constant && bets;
+    // A mean without spread may be compared with one that has some; nothing else can be planned.
+    if (constant && !bets) return std::nullopt;
+    if (!question.references.empty()) {
+      planned.reference_error = question.references[channel].standard_error;
+    }
+    planned.unit = unit_of_theta(question, channel, other_mean);
+    if (bets) {
+      const PilotChannel pilot = pilot_channel(question, 0, channel, pilots);
+      planned.law = planned_law(
+          planned, pilot, as_secondaries(question.subjects[0], pilot.values, plan.primaries[0]));
+    }
+    return planned;
   }
 
   PlannedChannel observed(const Seen& seen, const Regions& regions) const override {
@@ -565,47 +612,6 @@ class MeanTheta : public Theta {
     if (question.of_two()) return;
     planned.range = range_of(question.subjects[0], channel, moments);
     planned.null_value = question.references[channel].value + question.offset;
-  }
-
-  /// The channel as the pilot shows it. Returns nullopt if it has no spread and no range bounds
-  /// what it missed.
-  static std::optional<PlannedChannel> from_pilots(const TestOutcome& test, std::size_t channel,
-                                                   const Pilots& pilots) {
-    const Question& question = test.question;
-    const Plan& plan = test.plan;
-    PlannedChannel planned{.regions = plan.regions[channel]};
-    bool constant = true;
-    double other_mean = 0;
-    for (std::size_t i = 0; i < question.subjects.size(); ++i) {
-      const Moments moments = pilot_channel(question, i, channel, pilots).moments;
-      if (i == 0) note_range(question, channel, moments, planned);
-      if (i == 1) other_mean = moments.mean;
-      if (is_constant(question.subjects[i], channel, moments)) continue;
-      constant = false;
-      const double averaged = question.subjects[i].averaged(plan.primaries[i]);
-      planned.deviations[i] =
-          question.factor_of(i) * std::sqrt(stats::planned_variance(moments) / averaged);
-    }
-    const bool bets = plan.method.is.in_range && !question.of_two();
-    planned.unseen = constant && bets;
-    // A mean without spread may be compared with one that has some; nothing else can be planned.
-    if (constant && !bets) return std::nullopt;
-    if (!question.references.empty()) {
-      planned.reference_error = question.references[channel].standard_error;
-    }
-    planned.unit = unit_of_theta(question, channel, other_mean);
-    if (planned.unit == 0) {
-      if (!planned.regions.has_margin()) return std::nullopt;
-      throw std::domain_error(
-          "the other mean is 0 in the pilot, and a margin in per cent of it means nothing; give "
-          "the margin as a number");
-    }
-    if (bets) {
-      const PilotChannel pilot = pilot_channel(question, 0, channel, pilots);
-      planned.law = planned_law(
-          planned, pilot, as_secondaries(question.subjects[0], pilot.values, plan.primaries[0]));
-    }
-    return planned;
   }
 
   /// The least effect on one side; nullopt if the range ends before.

@@ -64,9 +64,6 @@ class LogTheta : public Theta {
       double& of_truth = question.has_reference_subject ? error.drawn : error.fixed;
       of_truth = std::hypot(of_truth, std::sqrt(spread_of_truth(seen, i) / count));
     }
-    if (!question.references.empty()) {
-      error.fixed = std::hypot(error.fixed, seen.reference().standard_error);
-    }
     return error;
   }
 
@@ -77,16 +74,26 @@ class LogTheta : public Theta {
   std::optional<std::uint64_t> secondaries_of(const TestOutcome& test, std::size_t i,
                                               const ErrorShare& share,
                                               const Pilots& pilots) const override {
-    const Regions& regions = test.plan.regions[i];
-    const auto channel = from_pilots(test, i, regions, pilots);
-    if (!channel || !regions.detect) return std::nullopt;
-    return secondaries_by_t(test.plan.method, planned_rates(share, regions), *channel);
+    const auto channel = planned(test, i, pilots);
+    if (!channel || !channel->regions.detect) return std::nullopt;
+    return secondaries_by_t(test.plan.method, planned_rates(share, channel->regions), *channel);
   }
 
-  std::optional<PlannedChannel> planned(const TestOutcome& test, const Regions& regions,
+  /// The plan of one channel; nullopt if a pilot has no spread there.
+  std::optional<PlannedChannel> planned(const TestOutcome& test, std::size_t channel,
                                         const Pilots& pilots) const override {
-    if (has_rows(test.question)) return std::nullopt;
-    return from_pilots(test, std::nullopt, regions, pilots);
+    const Question& question = test.question;
+    // Of rows, variances alone are foretold.
+    if (has_rows(question) && !is.of_moments) return std::nullopt;
+    if (!all_piloted(question, pilots)) return std::nullopt;
+    PlannedChannel planned{.regions = test.plan.regions[channel]};
+    for (std::size_t i = 0; i < question.compared(); ++i) {
+      const std::optional<double> spread = pilot_spread(test, i, channel, pilots);
+      if (!spread) return std::nullopt;
+      planned.deviations[i] = std::sqrt(*spread);
+    }
+    if (!planned.varies()) return std::nullopt;
+    return planned;
   }
 
   PlannedChannel observed(const Seen& seen, const Regions& regions) const override {
@@ -168,14 +175,13 @@ class LogTheta : public Theta {
   }
 
   std::optional<double> pilot_spread(const TestOutcome& test, std::size_t subject,
-                                     std::optional<std::size_t> channel,
-                                     const Pilots& pilots) const {
+                                     std::size_t channel, const Pilots& pilots) const {
     const Subject& side = test.question.subjects[subject];
     const Pilot& pilot = *pilot_of(side, pilots);
     const double averaged = side.averaged(test.plan.primaries[subject]);
     std::optional<double> most;
     for (std::size_t i = 0; i < side.channels.size(); ++i) {
-      if (channel && !is.joins_channels && i != *channel) continue;
+      if (!is.joins_channels && i != channel) continue;
       const std::size_t index = side.channels[i];
       const ChannelData seen{.moments = pilot.moments(index),
                              .joint = joint_moments(pilot.sums->details(index))};
@@ -183,21 +189,6 @@ class LogTheta : public Theta {
       if (spread) most = std::max(most.value_or(0), *spread);
     }
     return most;
-  }
-
-  /// The plan of one channel, or of the worst; nullopt if a pilot has no spread there.
-  std::optional<PlannedChannel> from_pilots(const TestOutcome& test,
-                                            std::optional<std::size_t> channel,
-                                            const Regions& regions, const Pilots& pilots) const {
-    if (!all_piloted(test.question, pilots)) return std::nullopt;
-    PlannedChannel planned{.regions = regions};
-    for (std::size_t i = 0; i < test.question.compared(); ++i) {
-      const std::optional<double> spread = pilot_spread(test, i, channel, pilots);
-      if (!spread) return std::nullopt;
-      planned.deviations[i] = std::sqrt(*spread);
-    }
-    if (!planned.varies()) return std::nullopt;
-    return planned;
   }
 };
 

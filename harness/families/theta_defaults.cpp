@@ -88,6 +88,11 @@ std::string Theta::why_impossible(const Question& question) const {
              : "this claim would take more observations than can be counted; give a larger margin";
 }
 
+std::optional<PlannedChannel> Theta::planned(const TestOutcome& test, std::size_t channel,
+                                             const Pilots&) const {
+  return PlannedChannel{.regions = test.plan.regions[channel]};
+}
+
 std::optional<double> Theta::detectable(const Sized& sized) const {
   if (!sized.channel.varies()) return std::nullopt;
   double most = 0;

@@ -229,7 +229,7 @@ stats::MeanPlan mean_plan(const Sized& sized, int side) {
 std::uint64_t secondaries_by_t(const Method& method, const stats::ErrorRates& rates,
                                const PlannedChannel& channel) {
   const double detect = *channel.regions.detect * channel.unit;
-  return stats::student_t_sample_size(mean_plan(method, rates, channel, 1), detect)
+  return stats::student_t_sample_size(mean_plan(method, rates, channel, 0), detect)
       .value_or(impossible_secondaries);
 }
 

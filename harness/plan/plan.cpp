@@ -342,57 +342,41 @@ bool inside_family(const Question& question) {
 
 // ---- Forecast
 
-/// Data that the pilots predict for a channel at this many secondaries: moments scaled to the
-/// plan's primaries, with what rows are allowed. Returns nullopt if an estimator has no pilot, or
-/// no spread in it.
-std::optional<std::vector<ChannelData>> expected_data(const TestOutcome& test, std::size_t channel,
-                                                      const Pilots& pilots,
-                                                      std::uint64_t secondaries) {
-  const Question& question = test.question;
-  // An estimator's pilot says nothing of a sampler's draws.
-  if (!question.is().of_moments || test.plan.method.is.of_batches) return std::nullopt;
-  std::vector<ChannelData> data(question.subjects.size());
-  for (std::size_t i = 0; i < data.size(); ++i) {
-    const Subject& side = question.subjects[i];
-    const Pilot* const pilot = pilot_of(side, pilots);
-    if (pilot == nullptr) return std::nullopt;
-    const PilotChannel seen = pilot_channel(side, *pilot, channel);
-    if (is_constant(side, channel, seen.moments)) return std::nullopt;
-    const double averaged = side.averaged(test.plan.primaries[i]);
-    const stats::Moments moments =
-        stats::moments_of_means(seen.moments, averaged, side.secondaries(secondaries));
-    data[i] = {.primaries = test.plan.primaries[i],
-               .moments = as_tested(test.plan, i, channel, seen.values, moments)};
-    if (!std::isfinite(data[i].moments.m2)) return std::nullopt;
-    if (averaged == 1) data[i].values = seen.values;
-  }
-  return data;
-}
-
 using StoppingLooks = std::vector<stats::StoppingLook>;
+
+/// The standard error of theta's estimate at a look of this size.
+double error_at_look(const TestOutcome& test, const PlannedChannel& channel, std::uint64_t look) {
+  double error = channel.reference_error;
+  for (std::size_t i = 0; i < test.question.compared(); ++i) {
+    const auto count = static_cast<double>(test.question.subjects[i].secondaries(look));
+    error = std::hypot(error, channel.deviations[i] / std::sqrt(count));
+  }
+  return error / channel.unit;
+}
 
 std::optional<StoppingLooks> stopping_looks(const TestOutcome& test, std::size_t channel,
                                             const Pilots& pilots) {
+  if (!test.question.is().of_moments) return std::nullopt;
+  const auto planned = test.question.theta->planned(test, channel, pilots);
+  if (!planned) return std::nullopt;
   StoppingLooks looks;
   for (std::size_t k = 0; k < test.plan.looks.count(); ++k) {
-    const auto data = expected_data(test, channel, pilots, test.plan.looks.sizes[k]);
-    if (!data) return std::nullopt;
-    const auto error = test.question.theta->error({test.question, channel, *data});
-    const double size = error ? std::hypot(error->drawn, error->fixed) : 0;
-    if (!(size > 0)) return std::nullopt;
+    const double error = error_at_look(test, *planned, test.plan.looks.sizes[k]);
+    if (!(error > 0) || !std::isfinite(error)) return std::nullopt;
     const Regions& regions = test.plan.regions[channel];
     const auto [alpha, beta] = test.share_at(k);
     looks.push_back(stats::stopping_look({.claimed = regions.claimed_edge(),
                                           .forbidden = regions.forbidden_edge(),
                                           .two_sided = regions.two_sided()},
-                                         size, alpha, beta));
+                                         error, alpha, beta));
   }
   return looks;
 }
 
 /// Adds the outlooks, where the pilots give every channel a standard error.
 void foresee(const TestOutcome& test, const Pilots& pilots, Forecast& found) {
-  if (test.plan.looks.law == stats::LookLaw::anytime_valid) return;
+  const bool bets = test.plan.looks.law == stats::LookLaw::anytime_valid;
+  if (bets || test.plan.method.is.of_batches) return;
   std::vector<stats::Outlook> if_true;
   std::optional<stats::Outlook> if_off;
   for (std::size_t channel = 0; channel < test.question.channel_count(); ++channel) {
@@ -413,25 +397,13 @@ void foresee(const TestOutcome& test, const Pilots& pilots, Forecast& found) {
   found.if_off = if_off;
 }
 
-/// The expected channel; nullopt if the pilots say nothing of it.
-std::optional<PlannedChannel> expected_channel(const TestOutcome& test, std::size_t channel,
-                                               const Pilots& pilots, std::uint64_t secondaries) {
-  const Question& question = test.question;
-  const Regions& regions = test.plan.regions[channel];
-  if (!question.is().of_moments) {
-    return question.theta->planned(test, regions, pilots);
-  }
-  const auto data = expected_data(test, channel, pilots, secondaries);
-  if (!data) return std::nullopt;
-  return question.theta->observed({question, channel, *data}, regions);
-}
-
 std::optional<double> detectable_of(const TestOutcome& test, const Pilots& pilots) {
   const TestSize size{.share = test.share_at(test.plan.looks.count() - 1),
                       .secondaries = test.plan.most_secondaries()};
   std::optional<double> largest;
+  if (test.plan.method.is.of_batches) return largest;
   for (std::size_t channel = 0; channel < test.question.channel_count(); ++channel) {
-    const auto planned = expected_channel(test, channel, pilots, size.secondaries);
+    const auto planned = test.question.theta->planned(test, channel, pilots);
     if (!planned) return std::nullopt;
     const auto found = detectable_effect({test, size, *planned});
     if (found) largest = std::max(*found, largest.value_or(0));

@@ -25,8 +25,8 @@ struct ChannelOutcome;
 struct DrawnTest;
 struct TestOutcome;
 
-/// A channel's law as planning takes it: a secondary's standard deviations, at the pilot's upper
-/// limit, and the unit of margins. A ratio has the deviations of relative influence values.
+/// A channel's law as planning takes it: a secondary's standard deviations, and the unit of
+/// margins. A ratio has the deviations of relative influence values.
 struct PlannedChannel {
   Regions regions = {};
   std::array<double, 2> deviations = {};  ///< Each subject's, times its factor.
@@ -144,10 +144,9 @@ class Theta {
 
   // ---- Power. `channel` is from pilots or from the test's own data.
 
-  virtual std::optional<PlannedChannel> planned(const TestOutcome&, const Regions& regions,
-                                                const Pilots&) const {
-    return PlannedChannel{.regions = regions};
-  }
+  /// The channel as pilots show it; nullopt if they say nothing of it.
+  virtual std::optional<PlannedChannel> planned(const TestOutcome&, std::size_t channel,
+                                                const Pilots&) const;
   virtual PlannedChannel observed(const Seen&, const Regions& regions) const {
     return {.regions = regions};
   }
