@@ -267,26 +267,26 @@ class LawTheta : public Theta {
   }
 
   std::optional<double> detectable(const Sized& sized) const override {
-    const auto& [test, size, channel] = sized;
+    const TestOutcome& test = sized.test;
     if (in_cells(test.plan)) {
       const double observations = worth(sized);
-      return stats::chi_square_fit_detectable(fit_plan(test, size.share, observations),
+      return stats::chi_square_fit_detectable(fit_plan(test, sized.share(), observations),
                                               observations);
     }
     const stats::SampleSizes sizes = sized.sizes();
-    return stats::ks_detectable(distance_plan(test, size.share, sizes.y / sizes.x), sizes.x);
+    return stats::ks_detectable(distance_plan(test, sized.share(), sizes.y / sizes.x), sizes.x);
   }
 
   /// The probability, or a lower bound of it.
   std::optional<double> power(const Sized& sized, double effect) const override {
-    const auto& [test, size, channel] = sized;
+    const TestOutcome& test = sized.test;
     if (in_cells(test.plan)) {
       const double observations = worth(sized);
-      return stats::chi_square_fit_power(fit_plan(test, size.share, observations), observations,
+      return stats::chi_square_fit_power(fit_plan(test, sized.share(), observations), observations,
                                          effect);
     }
     const stats::SampleSizes sizes = sized.sizes();
-    return stats::ks_power_bound(distance_plan(test, size.share, sizes.y / sizes.x), sizes.x,
+    return stats::ks_power_bound(distance_plan(test, sized.share(), sizes.y / sizes.x), sizes.x,
                                  effect);
   }
 

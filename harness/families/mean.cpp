@@ -538,7 +538,7 @@ class MeanTheta : public Theta {
     double least = 1;
     for (const int side : sized.channel.regions.sides()) {
       const double theta = side * effect * sized.channel.unit;
-      least = std::min(least, plans.power(exact, sized.size.secondaries, theta));
+      least = std::min(least, plans.power(exact, sized.secondaries(), theta));
     }
     return least;
   }
@@ -617,7 +617,7 @@ class MeanTheta : public Theta {
   /// The least effect on one side; nullopt if the range ends before.
   static std::optional<double> exact_effect(const Sized& sized, int side) {
     return stats::exact_detectable(*sized.test.plan.method.is.plans,
-                                   plan_of(sized.channel, sized.rates()), sized.size.secondaries,
+                                   plan_of(sized.channel, sized.rates()), sized.secondaries(),
                                    side);
   }
 };

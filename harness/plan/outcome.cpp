@@ -270,11 +270,15 @@ double distance_of(const Regions& regions) {
   return regions.detect ? *regions.detect - regions.allow : 0;
 }
 
-stats::ErrorRates Sized::rates() const { return planned_rates(size.share, channel.regions); }
+ErrorShare Sized::share() const { return test.share_at(look); }
+
+std::uint64_t Sized::secondaries() const { return test.plan.looks.sizes[look]; }
+
+stats::ErrorRates Sized::rates() const { return planned_rates(share(), channel.regions); }
 
 stats::SampleSizes Sized::sizes() const {
   const auto taken = [&](std::size_t subject) {
-    return static_cast<double>(test.question.subjects[subject].secondaries(size.secondaries));
+    return static_cast<double>(test.question.subjects[subject].secondaries(secondaries()));
   };
   return {.x = taken(0), .y = taken(test.question.of_two() ? 1 : 0)};
 }

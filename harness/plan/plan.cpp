@@ -398,14 +398,12 @@ void foresee(const TestOutcome& test, const Pilots& pilots, Forecast& found) {
 }
 
 std::optional<double> detectable_of(const TestOutcome& test, const Pilots& pilots) {
-  const TestSize size{.share = test.share_at(test.plan.looks.count() - 1),
-                      .secondaries = test.plan.most_secondaries()};
   std::optional<double> largest;
   if (test.plan.method.is.of_batches) return largest;
   for (std::size_t channel = 0; channel < test.question.channel_count(); ++channel) {
     const auto planned = test.question.theta->planned(test, channel, pilots);
     if (!planned) return std::nullopt;
-    const auto found = detectable_effect({test, size, *planned});
+    const auto found = detectable_effect({test, test.plan.looks.count() - 1, *planned});
     if (found) largest = std::max(*found, largest.value_or(0));
   }
   return largest;

@@ -136,13 +136,10 @@ bool was_activated(const Subject& subject, const Pool& pool, std::uint64_t obser
 
 // ---- Judgement
 
-/// The size for which detectable effect and power are quoted: the last look, or where a budget
-/// ended.
-TestSize full_size(const TestOutcome& outcome) {
-  const stats::LookSchedule& looks = outcome.plan.looks;
+/// The look for which detectable effect and power are quoted: the last, or where a budget ended.
+std::size_t quoted_look(const TestOutcome& outcome) {
   const bool ended = outcome.verdict == Verdict::inconclusive;
-  const std::size_t look = ended ? outcome.look : looks.sizes.size() - 1;
-  return {.share = outcome.share_at(look), .secondaries = looks.sizes[look]};
+  return ended ? outcome.look : outcome.plan.looks.count() - 1;
 }
 
 /// Error of the interval whose ends decide: two tests at beta, or one or two tails at alpha. Where
@@ -183,7 +180,7 @@ void note_sizes(TestOutcome& outcome, const DrawnTest& test) {
   for (ChannelOutcome& channel : outcome.channels) {
     channel.effect = effect_of(outcome, channel);
     if (channel.image) {
-      note_detectable(outcome, full_size(outcome), channel);
+      note_detectable(outcome, quoted_look(outcome), channel);
       continue;
     }
     const std::vector<ChannelData> data = data_of(test, channel.index);
@@ -199,7 +196,7 @@ void note_sizes(TestOutcome& outcome, const DrawnTest& test) {
              data[subject].moments.standard_error());
       }
     }
-    const Sized sized{outcome, full_size(outcome), observed};
+    const Sized sized{outcome, quoted_look(outcome), observed};
     const bool equivalence = channel.regions.within();
     if (!equivalence) channel.detectable = detectable_effect(sized);
     if (!equivalence && !channel.regions.detect) continue;
@@ -227,10 +224,9 @@ ChannelOutcome channel_outcome(const DrawnTest& test, const Seen& seen) {
           .at_null = at_null,
           .evidence = std::move(found.evidence),
           .decision = decision,
-          .finds_nothing = !regions.has_forbidden() &&
-                           theta.finds_nothing({test.outcome,
-                                                {test.outcome.share(), test.outcome.secondaries()},
-                                                theta.observed(seen, regions)}),
+          .finds_nothing =
+              !regions.has_forbidden() &&
+              theta.finds_nothing({test.outcome, test.outcome.look, theta.observed(seen, regions)}),
           .reference = theta.marked(seen),
           .image = std::move(found.image)};
 }

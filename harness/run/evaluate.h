@@ -85,8 +85,8 @@ std::string others_at(const DrawnTest& test, const PlaceEffect& place);
 /// decided a failed claim on images.
 std::string where_it_differs(const DrawnTest& test);
 
-/// Sets the least detectable difference: one that is the same everywhere, by the sum over the whole
-/// image, and one in a typical cell. Not if the claim allows a difference.
-void note_detectable(const TestOutcome& outcome, const TestSize& size, ChannelOutcome& channel);
+/// Sets the difference that this look would find: one that is the same everywhere, by the sum over
+/// the whole image, and one in a typical cell. Not if the claim allows a difference.
+void note_detectable(const TestOutcome& outcome, std::size_t look, ChannelOutcome& channel);
 
 }  // namespace assay::harness

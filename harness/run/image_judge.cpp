@@ -239,13 +239,14 @@ std::string where_it_differs(const DrawnTest& test) {
          constants;
 }
 
-void note_detectable(const TestOutcome& outcome, const TestSize& size, ChannelOutcome& channel) {
+void note_detectable(const TestOutcome& outcome, std::size_t look, ChannelOutcome& channel) {
   if (channel.regions.relation == Relation::within || channel.regions.allow > 0) return;
-  const double shrunk =
-      std::sqrt(static_cast<double>(outcome.secondaries()) / static_cast<double>(size.secondaries));
-  const double alpha = (1 - share_of_distance(outcome.question)) * size.share.alpha;
+  const ErrorShare share = outcome.share_at(look);
+  const double shrunk = std::sqrt(static_cast<double>(outcome.secondaries()) /
+                                  static_cast<double>(outcome.plan.looks.sizes[look]));
+  const double alpha = (1 - share_of_distance(outcome.question)) * share.alpha;
   const auto found = [&](double part, double error) -> std::optional<double> {
-    const double z = critical_value(alpha * part, true) + critical_value(size.share.beta, false);
+    const double z = critical_value(alpha * part, true) + critical_value(share.beta, false);
     const double least = z * error * shrunk;
     if (!std::isfinite(least) || !(least > 0)) return {};
     return least;

@@ -41,18 +41,14 @@ struct PlannedChannel {
   bool varies() const { return deviations[0] > 0 || deviations[1] > 0; }
 };
 
-/// A look's levels, and its secondaries of each subject, or all that it has.
-struct TestSize {
-  ErrorShare share;
-  std::uint64_t secondaries;
-};
-
-/// A test of that size, with a channel's law.
+/// A look of a test, with a channel's law.
 struct Sized {
   const TestOutcome& test;
-  TestSize size;
+  std::size_t look;
   const PlannedChannel& channel;
 
+  ErrorShare share() const;
+  std::uint64_t secondaries() const;
   /// The errors that the size is planned for, and the sizes of the two subjects; one is both.
   stats::ErrorRates rates() const;
   stats::SampleSizes sizes() const;
