@@ -5,7 +5,6 @@
 
 #include "harness/draws/sampler_setup.h"
 #include "harness/families/families.h"
-#include "harness/plan/outcome.h"
 #include "harness/run/evaluate.h"
 #include "stats/means/binomial.h"
 #include "stats/tails/tails.h"

@@ -6,7 +6,6 @@
 
 #include "harness/base/work.h"
 #include "harness/families/families.h"
-#include "harness/plan/outcome.h"
 #include "harness/run/evaluate.h"
 #include "harness/sampling/image_views.h"
 #include "harness/theta/ask.h"

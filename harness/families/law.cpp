@@ -10,7 +10,6 @@
 #include "harness/draws/sampler_setup.h"
 #include "harness/families/families.h"
 #include "harness/language/laws.h"
-#include "harness/plan/outcome.h"
 #include "harness/run/evaluate.h"
 #include "stats/basics/scores.h"
 #include "stats/cells/chi_square.h"

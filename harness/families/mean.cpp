@@ -5,10 +5,8 @@
 #include <memory>
 
 #include "harness/families/families.h"
-#include "harness/plan/outcome.h"
 #include "harness/run/evaluate.h"
 #include "harness/theta/ask.h"
-#include "reports/words/number.h"
 #include "stats/basics/moments.h"
 #include "stats/gates/assumption_gates.h"
 #include "stats/means/power_exact.h"

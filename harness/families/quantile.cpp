@@ -1,9 +1,7 @@
 #include <cmath>
 #include <utility>
-#include <vector>
 
 #include "harness/families/families.h"
-#include "harness/plan/outcome.h"
 #include "harness/theta/ask.h"
 #include "stats/basics/scores.h"
 #include "stats/laws/quantile_test.h"

@@ -9,10 +9,8 @@
 #include <span>
 #include <stdexcept>
 #include <utility>
-#include <vector>
 
 #include "harness/families/families.h"
-#include "harness/plan/outcome.h"
 #include "harness/run/evaluate.h"
 #include "harness/theta/ask.h"
 #include "stats/gates/assumption_gates.h"

@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "harness/families/families.h"
-#include "harness/plan/outcome.h"
 #include "harness/run/evaluate.h"
 #include "harness/suite/suite.h"
 #include "stats/gates/assumption_gates.h"

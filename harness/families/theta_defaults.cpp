@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "harness/families/families.h"
-#include "harness/plan/outcome.h"
 #include "harness/run/evaluate.h"
 #include "harness/sampling/summary.h"
 #include "harness/theta/ask.h"

@@ -17,7 +17,6 @@
 #include "stats/images/image_constants.h"
 #include "stats/images/image_dependence.h"
 #include "stats/images/image_family.h"
-#include "stats/images/image_moments.h"
 
 namespace assay::harness {
 

@@ -7,7 +7,6 @@
 #include <limits>
 #include <numeric>
 #include <set>
-#include <tuple>
 
 #include "estimators/core/waiting.h"
 #include "harness/base/refuse.h"
