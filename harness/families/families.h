@@ -43,9 +43,7 @@ Constant truth_of(const Seen& seen, std::size_t subject);
 /// ", red" if the question has several channels.
 std::string channel_suffix(const Question& question, std::size_t channel);
 
-/// The cells of a sampler's declared density, of a claim about its draws.
 const DensityCells& density_of(const Question& question);
-/// A subject's points of a claim about its law.
 stats::Points points_of(const Seen& seen, std::size_t subject);
 /// The law that a claim about one sample names, or the sampler's density.
 stats::DeclaredLaw declared_law(const Question& question, std::size_t channel);

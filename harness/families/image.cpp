@@ -16,7 +16,6 @@ namespace {
 
 const Location& place_of(const Question& question) { return question.test->claim.left.where; }
 
-/// True if the image is compared with numbers that are all zero.
 bool is_against_darkness(const Question& question) {
   return !question.of_two() &&
          std::ranges::all_of(question.references,
@@ -128,7 +127,6 @@ stats::ImageNoise planned_noise(const TestOutcome& test, const Pilots& pilots) {
   return all;
 }
 
-/// The square of the margins' unit.
 double squared_unit(const Question& question, const stats::ImageNoise& last) {
   if (!question.theta->is_relative(question, 0)) {
     return static_cast<double>(question.subjects[0].channels.size());

@@ -358,7 +358,6 @@ void require_plane(const Question& question) {
          *question.test->method, first, second);
 }
 
-/// The compared marginals, as "u, v".
 std::string channel_names(const Subject& side) {
   return fmt::format("{}", fmt::join(mapped(side.declared(), &Channel::name), ", "));
 }

@@ -38,7 +38,6 @@ Evidence quantile(const Seen& seen) {
   return evidence;
 }
 
-/// Deviation of one secondary, for planning.
 double quantile_deviation(const TestOutcome& test, std::size_t subject, std::size_t channel,
                           double distance, const Pilots& pilots) {
   const double probability = test.question.test->claim.left.arguments[0];

@@ -18,7 +18,6 @@
 namespace assay::harness {
 namespace {
 
-/// The distance with the margin's norm.
 stats::ImageDistance in_units_of_margin(const stats::ImageDistance& distance,
                                         const stats::ImageExtent& extent, bool relative) {
   if (!relative) {

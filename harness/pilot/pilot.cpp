@@ -63,7 +63,6 @@ std::uint64_t paid_by(const Question& question, const Subject& side) {
   return std::min(most, static_cast<std::uint64_t>(paid) / pools);
 }
 
-/// Observations of a pool for so many primaries.
 std::uint64_t observations_for(std::uint64_t most, const Setup& setup, std::uint64_t primaries) {
   return std::max<std::uint64_t>(most / primaries_of_observation(setup, primaries),
                                  stats::least_replicates);
@@ -119,7 +118,6 @@ std::variant<Pilot, Fault> read(const std::shared_ptr<const Pool>& pool) {
                .images = drawn.images(images)};
 }
 
-/// The names of the estimators whose costs a claim compares.
 std::set<std::string> compared_by_cost(const std::vector<Question>& questions) {
   std::set<std::string> names;
   for (const Question& question : questions) {

@@ -49,8 +49,6 @@ reports::Advice setting(const TestOutcome& outcome, double factor) {
           .value = fmt::format("{:.0f}", std::ceil(factor * now / step) * step)};
 }
 
-// ---- Sizes
-
 /// Chi-square and F take flatter data for normal ones and find as little as in those.
 double deviation_for(const Method& method, double deviation) {
   return method.is.of_normal_values && deviation > 0 ? std::max(std::numbers::sqrt2, deviation)
@@ -191,8 +189,6 @@ Reason what_would_help(const TestOutcome& outcome) {
       help.text, floor_of_evidence);
   return help;
 }
-
-// ---- Sizes
 
 bool has_planned_size(const Question& question) {
   return question.test->detect || question.test->claim.relation == Relation::within;

@@ -75,7 +75,6 @@ struct Plan {
   std::uint64_t most_secondaries() const { return looks.sizes.back(); }
 };
 
-/// One channel's numbers.
 struct ChannelOutcome {
   std::size_t index = 0;  ///< Index in the question.
   std::string name;
@@ -125,9 +124,6 @@ struct TestOutcome {
   }
 };
 
-// ---- Gates in words
-
-/// Says what a gate found, with its limit.
 std::string gate_sentence(const Gate& gate);
 /// One such sentence for each red gate; "" if none is red.
 std::string red_gates(const std::vector<Gate>& gates);
@@ -204,7 +200,6 @@ std::uint64_t primaries_of_look(const TestOutcome& test, std::uint64_t look);
 /// A computed count, rounded up; `impossible_secondaries` if it is too large or NaN.
 std::uint64_t whole_secondaries(double count);
 
-/// True if every subject has a pilot.
 bool all_piloted(const Question& question, const Pilots& pilots);
 
 /// The distance to find from the claimed region's edge; 0 if there is none.

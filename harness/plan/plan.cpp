@@ -163,8 +163,6 @@ double part_of_size(const Question& question, const Pilots& pilots) {
   return size > 0 ? detect->value / size : 0;
 }
 
-// ---- Looks
-
 // Half a day at 40 ns a primary.
 constexpr double most_planned_primaries = 1e12;
 // A test may draw so many times its first look, although it needs less, while a gate is red.
@@ -339,8 +337,6 @@ bool inside_family(const Question& question) {
   return question.test->expect == reports::Verdict::pass &&
          std::ranges::none_of(question.subjects, is_mutant);
 }
-
-// ---- Forecast
 
 using StoppingLooks = std::vector<stats::StoppingLook>;
 

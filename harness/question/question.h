@@ -59,7 +59,6 @@ struct Subject {
   }
 };
 
-/// True if a subject's observations are ready-made.
 inline bool is_recorded(const Subject& subject) {
   return subject.setup->observations().has_value();
 }
@@ -162,7 +161,6 @@ const ScaledQuantity* other_side(const Claim& claim);
 std::vector<Constant> truths_of(const TestEntry& test, const Subject& subject,
                                 const Source& source);
 
-/// Adds the drawn `reference` of the test, if it has one.
 void add_reference(Question& question, const Estimators& estimators);
 
 void require_absolute(const Margin& margin, const char* reason);

@@ -18,8 +18,6 @@ namespace {
 
 using reports::Verdict;
 
-// ---- Observations that cannot be judged
-
 /// The command that repeats one observation; "" of a claim in a test binary.
 std::string replay_line(const TestOutcome& outcome, std::uint64_t observation) {
   if (outcome.question.test->where.file.empty()) return "";
@@ -133,8 +131,6 @@ bool was_activated(const Subject& subject, const Pool& pool, std::uint64_t obser
   return subject.purpose.empty() ? estimates_differ(subject, pool, observations)
                                  : draws_differ(subject, pool, observations);
 }
-
-// ---- Judgement
 
 /// The look for which detectable effect and power are quoted: the last, or where a budget ended.
 std::size_t quoted_look(const TestOutcome& outcome) {

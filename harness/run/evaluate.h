@@ -58,8 +58,6 @@ Reason narrate(const TestOutcome& outcome);
 /// Says that these observations exclude no `what` ("exponent").
 std::string excludes_no(const std::string& what);
 
-// ---- Images
-
 /// Settings of the family's test at the current look. They refer to `test`.
 ImageTest image_test(const DrawnTest& test);
 

@@ -110,8 +110,6 @@ std::uint64_t cost_of_look(const TestWork& work) {
   return cost;
 }
 
-// ---- Pools
-
 // The histogram spans so many standard deviations to each side, within the channel's range.
 constexpr double histogram_deviations = 5;
 

@@ -173,7 +173,6 @@ class Looking {
   }
 
  private:
-  /// Thrown if a side's pictures cannot be read.
   struct Unread {
     std::size_t side;
     Fault fault;

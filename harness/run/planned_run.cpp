@@ -205,7 +205,6 @@ std::unique_ptr<SuiteRun> prepare_suite(const Suite& suite, const RunOptions& op
 
 using Missing = std::map<std::string, foreign::MissingFile>;  // by file
 
-/// Adds the missing files of the first `count` observations.
 void add_missing(const Pool& pool, std::uint64_t count, Missing& missing) {
   const auto* const rendered = dynamic_cast<const foreign::Rendered*>(pool.setup().get());
   if (rendered == nullptr) return;
@@ -213,8 +212,6 @@ void add_missing(const Pool& pool, std::uint64_t count, Missing& missing) {
     missing.emplace(each.file, std::move(each));
   }
 }
-
-// ---- Shards
 
 // A shard may draw so many times its fair part, to save what another shard would draw again.
 constexpr double slack = 1.1;

@@ -23,8 +23,6 @@
 
 namespace assay::harness {
 
-// ---- A test's pools, and the looks at what they draw
-
 /// Stored values of every channel, for the normal quantile plot.
 inline constexpr std::uint64_t plotted_values = 2000;
 
@@ -65,8 +63,6 @@ void sample_in_looks(const std::vector<TestWork*>& tests,
                      const std::vector<std::shared_ptr<Pool>>& pools, const Rounds& rounds,
                      Progress& progress);
 
-// ---- Suites
-
 /// A test without a question. It is skipped if a program that its suite needs is missing, and an
 /// error if a source cannot be prepared.
 struct Untested {
@@ -75,7 +71,6 @@ struct Untested {
   std::string message;
 };
 
-/// A suite in a run: its text, what was prepared from it, and its results.
 struct SuiteRun {
   Suite suite;
   std::uint64_t seed = 1;

@@ -81,7 +81,6 @@ void require_moments_suffice(const Question& question) {
   }
 }
 
-/// The margins of a test: `detect`, `allow` and that of `within`.
 std::vector<Margin> margins_of(const TestEntry& test) {
   std::vector<Margin> margins;
   if (test.detect) margins.push_back(*test.detect);

@@ -19,7 +19,6 @@ Question ask(const TestEntry& test, const Estimators& estimators, std::uint64_t 
 
 bool has_image(const Question& question);
 
-/// The default `detect` of a claim about laws.
 inline constexpr double default_law_effect = 0.05;
 
 /// ask() for a test as its user wrote it. A claim about laws gets the default `detect`, unless the

@@ -66,7 +66,6 @@ inline Powers powers_of(Keeps keeps) {
 /// Replicates of a method that keeps blocks: enough for Student's t to have near-normal tails.
 inline constexpr std::uint64_t replicate_count = 32;
 
-/// Other properties of a method.
 struct MethodTraits {
   bool exact = false;               ///< The level holds at every sample size.
   bool in_range = false;            ///< Rests on a channel's declared range.
