@@ -37,7 +37,7 @@ struct Coordinate {
 /// Maps a domain to a rectangle, so that cells and marginals of all domains are those of a
 /// rectangle. Hemisphere and sphere: theta and phi, density per solid angle times sin theta.
 /// Square: u and v. Triangle: u and v / (1 - u), times 1 - u. Its second marginal has v and
-/// u / (1 - v).
+/// u / (1 - v). An interval has one coordinate; the second is 0.
 struct DomainChart {
   Domain domain;
   bool turned;  ///< True if its first coordinate is the second marginal.
@@ -54,6 +54,7 @@ struct DomainChart {
       const Coordinate& phi = turned ? a : b;
       return {theta.sine * phi.cosine, theta.sine * phi.sine, theta.cosine};
     }
+    if (domain == Domain::interval) return {a.value, 0, 0};
     const double other = domain == Domain::triangle ? b.value * (1 - a.value) : b.value;
     return turned ? Point{other, a.value, 0} : Point{a.value, other, 0};
   }
@@ -66,6 +67,7 @@ struct DomainChart {
     const bool directions = has_directions(domain);
     std::array<double, 2> both{directions ? angles[0].coordinate(p) : p[0],
                                directions ? angles[1].coordinate(p) : p[1]};
+    if (domain == Domain::interval) both[1] = 0;
     if (turned) std::swap(both[0], both[1]);
     if (domain == Domain::triangle) both[1] = share_of_rest(both[1], both[0]);
     return both;
@@ -94,13 +96,15 @@ class RememberedCoordinates {
       std::size_t{1} << bits, {.value = std::numeric_limits<double>::quiet_NaN()});
 };
 
-/// The chart whose first coordinate is this marginal, 0 or 1. Not for intervals.
-DomainChart chart_by(Domain domain, std::size_t marginal) {
+/// The chart whose first coordinate is this marginal, 0 or 1.
+DomainChart chart_by(const Sampler& sampler, std::size_t marginal = 0) {
+  const Domain domain = sampler.domain();
   DomainChart chart{.domain = domain, .turned = marginal == 1, .first = {0, 1}, .second = {0, 1}};
   if (has_directions(domain)) {
     chart.first = {0, domain == Domain::hemisphere ? pi / 2 : pi};
     chart.second = {0, 2 * pi};
   }
+  if (domain == Domain::interval) chart.first = {sampler.bounds()[0], sampler.bounds()[1]};
   if (chart.turned) std::swap(chart.first, chart.second);
   return chart;
 }
@@ -134,7 +138,7 @@ constexpr std::size_t interval_cells = 64;
 
 stats::PlaneGrid grid_of(const Sampler& sampler, const auto& shares) {
   if (sampler.domain() != Domain::interval) {
-    const DomainChart chart = chart_by(sampler.domain(), 0);
+    const DomainChart chart = chart_by(sampler);
     const auto below = [&](double share) { return quantile(sampler.domain(), share); };
     const auto beside = [&](double share) { return share * chart.second.width(); };
     std::vector<double> first = borders(chart.first, shares(plane_cells[0]), below);
@@ -274,7 +278,7 @@ stats::LineDensity line_density(const Sampler& sampler, std::span<const Point> d
 /// panels.
 stats::PlaneDensity plane_density(const Sampler& sampler, std::size_t marginal,
                                   std::span<const Point> drawn, Densities densities) {
-  const DomainChart chart = chart_by(sampler.domain(), marginal);
+  const DomainChart chart = chart_by(sampler, marginal);
   Panels panels = sampler.panels();
   while (panels.first * panels.second > most_panels) {
     std::size_t& larger = panels.first > panels.second ? panels.first : panels.second;
@@ -364,10 +368,7 @@ std::size_t DrawCells::index(const SamplerDraw& draw) const {
   if (point_mass != point_masses_.end())
     return lobes_end_ + static_cast<std::size_t>(point_mass - point_masses_.begin());
   const auto lobe = static_cast<std::size_t>(draw.lobe);
-  if (sampler_.domain() == Domain::interval) {
-    return begin_[lobe] + of_lobes_[lobe].index(draw.point[0], 0);
-  }
-  const auto [first, second] = chart_by(sampler_.domain(), 0).coordinates(draw.point);
+  const auto [first, second] = chart_by(sampler_).coordinates(draw.point);
   return begin_[lobe] + of_lobes_[lobe].index(first, second);
 }
 
@@ -457,13 +458,7 @@ bool is_impossible(const Sampler& sampler, const Point& point, double density) {
   const auto moved = [&](double place, const stats::Span& span, int steps) {
     return std::clamp(place + steps * reach * span.width(), span.low, span.high);
   };
-  if (sampler.domain() == Domain::interval) {
-    const stats::Span span{sampler.bounds()[0], sampler.bounds()[1]};
-    return std::ranges::all_of(std::array{-1, 1}, [&](int steps) {
-      return sampler.density({moved(point[0], span, steps), 0, 0}) == 0;
-    });
-  }
-  const DomainChart chart = chart_by(sampler.domain(), 0);
+  const DomainChart chart = chart_by(sampler);
   const auto [first, second] = chart.coordinates(point);
   for (int i = -1; i <= 1; ++i) {
     for (int j = -1; j <= 1; ++j) {
