@@ -434,18 +434,15 @@ class MeanTheta : public Theta {
   }
 
   std::optional<std::uint64_t> secondaries_of(const TestOutcome& test, std::size_t index,
-                                              const ErrorShare& share,
+                                              const stats::ErrorRates& rates,
                                               const Pilots& pilots) const override {
-    const Regions& regions = test.plan.regions[index];
     const std::optional<PlannedChannel> channel = planned(test, index, pilots);
     if (!channel) return std::nullopt;
-    if (channel->unit == 0 && regions.has_margin()) {
+    if (channel->unit == 0) {
       throw std::domain_error(
           "the other mean is 0 in the pilot, and a margin in per cent of it means nothing; give "
           "the margin as a number");
     }
-    if (!regions.detect) return std::nullopt;
-    const stats::ErrorRates rates = planned_rates(share, regions);
     if (!test.plan.method.is.plans) return secondaries_by_t(test.plan.method, rates, *channel);
     const auto count = exact_secondaries(test, *channel, rates);
     const std::uint64_t most = channel->unseen ? most_for_the_unseen : impossible_secondaries;

@@ -84,21 +84,19 @@ class QuantileTheta final : public Theta {
   /// The size is planned by the density at the quantile that the pilot shows. If it differs, the
   /// size is off by its ratio and the verdict may be inconclusive. The test is exact for every law.
   std::optional<std::uint64_t> secondaries_of(const TestOutcome& test, std::size_t channel,
-                                              const ErrorShare& share,
+                                              const stats::ErrorRates& rates,
                                               const Pilots& pilots) const override {
     const Question& question = test.question;
     const double unit = unit_of_theta(question, channel, 0);
-    const Regions& regions = test.plan.regions[channel];
-    const double distance = distance_of(regions) * unit;
-    if (!(distance > 0)) return std::nullopt;
+    const double distance = distance_of(test.plan.regions[channel]) * unit;
     double sd = quantile_deviation(test, 0, channel, distance, pilots);
     if (question.of_two()) {
       const double factor = std::abs(question.factor);
       sd = std::hypot(sd, factor * quantile_deviation(test, 1, channel, distance / factor, pilots));
     }
     if (!(sd > 0)) return std::nullopt;
-    return whole_secondaries(stats::normal_sample_size(sd, {.allow = 0, .detect = distance},
-                                                       planned_rates(share, regions)));
+    return whole_secondaries(
+        stats::normal_sample_size(sd, {.allow = 0, .detect = distance}, rates));
   }
 
   std::optional<double> marked(const Seen& seen) const override {

@@ -70,11 +70,11 @@ class LogTheta : public Theta {
   }
 
   std::optional<std::uint64_t> secondaries_of(const TestOutcome& test, std::size_t i,
-                                              const ErrorShare& share,
+                                              const stats::ErrorRates& rates,
                                               const Pilots& pilots) const override {
     const auto channel = planned(test, i, pilots);
-    if (!channel || !channel->regions.detect) return std::nullopt;
-    return secondaries_by_t(test.plan.method, planned_rates(share, channel->regions), *channel);
+    if (!channel) return std::nullopt;
+    return secondaries_by_t(test.plan.method, rates, *channel);
   }
 
   /// The plan of one channel; nullopt if a pilot has no spread there.

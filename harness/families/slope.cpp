@@ -186,13 +186,11 @@ class SlopeTheta final : public Theta {
   /// Size for each subject, from a pilot that shows the claimed power law: its constant at the
   /// claimed exponent exceeds three standard errors. Nullopt if it does not.
   std::optional<std::uint64_t> secondaries_of(const TestOutcome& test, std::size_t channel,
-                                              const ErrorShare& share,
+                                              const stats::ErrorRates& rates,
                                               const Pilots& pilots) const override {
-    const Regions& regions = test.plan.regions[channel];
-    const double distance = distance_of(regions);
-    if (!(distance > 0) || of_costs(test.question)) return std::nullopt;
+    if (of_costs(test.question)) return std::nullopt;
+    const double distance = distance_of(test.plan.regions[channel]);
     const double null = test.question.references[channel].value;
-    const stats::ErrorRates rates = planned_rates(share, regions);
     const auto expected = expected_points(test, channel, pilots, null);
     if (!expected) return std::nullopt;
     double most = 0;

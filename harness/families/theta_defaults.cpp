@@ -71,7 +71,9 @@ std::optional<std::uint64_t> Theta::secondaries(const TestOutcome& test, const E
   std::optional<std::uint64_t> most;
   if (!all_piloted(test.question, pilots)) return most;
   for (std::size_t channel = 0; channel < test.question.channel_count(); ++channel) {
-    const auto count = secondaries_of(test, channel, share, pilots);
+    const Regions& regions = test.plan.regions[channel];
+    if (!regions.detect) continue;
+    const auto count = secondaries_of(test, channel, planned_rates(share, regions), pilots);
     if (!count) continue;
     most = std::max(most.value_or(least_secondaries), std::min(*count, impossible_secondaries));
   }

@@ -130,9 +130,10 @@ class Theta {
   /// channel needs, if all subjects have pilots.
   virtual std::optional<std::uint64_t> secondaries(const TestOutcome&, const ErrorShare&,
                                                    const Pilots&) const;
-  /// One channel's number of them; nullopt if nothing tells.
+  /// The number that finds one channel's `detect`; nullopt if nothing tells.
   virtual std::optional<std::uint64_t> secondaries_of(const TestOutcome&, std::size_t /*channel*/,
-                                                      const ErrorShare&, const Pilots&) const {
+                                                      const stats::ErrorRates&,
+                                                      const Pilots&) const {
     return std::nullopt;
   }
   virtual std::string why_impossible(const Question&) const;
