@@ -155,14 +155,6 @@ std::uint64_t wanted_primaries(const Question& question, const FamilyPlace& plac
   return wanted;
 }
 
-/// `detect`, if it is not in per cent, as a part of the claimed number or image; 0 of another.
-double part_of_size(const Question& question, const Pilots& pilots) {
-  const std::optional<Margin>& detect = question.test->detect;
-  if (!detect || detect->relative) return 0;
-  const double size = question.theta->known_size(question, &pilots);
-  return size > 0 ? detect->value / size : 0;
-}
-
 // Half a day at 40 ns a primary.
 constexpr double most_planned_primaries = 1e12;
 // A test may draw so many times its first look, although it needs less, while a gate is red.
@@ -512,8 +504,11 @@ TestOutcome plan_test(Question asked, const FamilyPlace& place, const Pilots& pi
 
 std::string doubtful_margin(const Question& question, const Pilots& pilots) {
   constexpr double large = 0.1, small = 1e-4;
-  const double part = part_of_size(question, pilots);
-  if (part == 0 || (part >= small && part <= large)) return "";
+  const std::optional<Margin>& detect = question.test->detect;
+  if (!detect || detect->relative) return "";
+  const double size = question.theta->known_size(question, &pilots);
+  const double part = detect->value / size;
+  if (!(size > 0) || (part >= small && part <= large)) return "";
   return fmt::format(
              fmt::runtime(part > large
                               ? "errors below `detect`, {:.3g} % of what is claimed, may pass"
