@@ -341,7 +341,9 @@ ImageEffect NoisePyramid::kept(const CellNoise& cell, const Rectangle& window,
 double NoisePyramid::log_p_with_unseen(const ImageEffect& effect, double weights) const {
   const auto& [a, b] = replicates_;
   const double fewest = b > 0 ? std::min(a, b) : a;
-  const double size = std::sqrt(fewest / halves) / weights;
+  // A value of probability q is (q (1 - q))^(-1/2) spreads away from another: 3.3 for q = .1.
+  constexpr double spreads = 3;
+  const double size = spreads * std::sqrt(fewest / halves) / weights;
   return log_p_constant(
       {.value = 0, .low = -size, .high = size, .count = static_cast<std::uint64_t>(fewest)},
       {effect.estimate, effect.standard_error});

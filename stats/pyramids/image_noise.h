@@ -157,7 +157,7 @@ class NoisePyramid {
   // f elements of a cell, by the variances of cells over those of their elements (`together`).
   //
   // Between different laws a cell is no clearer than values allow that it never showed. They may be
-  // as large as the noise of its neighbours.
+  // three times as large as the noise of its neighbours.
   ImageEffect kept(const CellNoise& cell, const Rectangle& window, std::size_t channel) const;
   // The k3 / k2 of an effect of this sign.
   double growth(const CellNoise& cell, double sign, const Rectangle& window,
@@ -201,8 +201,8 @@ class NoisePyramid {
   // in the cell itself.
   double growth(const std::array<PooledNoise::Moments, sides_of_pair>& here, double toward,
                 const std::array<double, sides_of_pair>& parts) const;
-  // ln p of an effect that values could explain which the cell never showed, as large as the noise
-  // of its neighbours (constant_sample.h).
+  // ln p of an effect that values could explain which the cell never showed, three times as large
+  // as the noise of its neighbours (constant_sample.h).
   double log_p_with_unseen(const ImageEffect& effect, double weights) const;
   // The k3 / k2 of one element, as the blocks tell it of an effect toward a side. None where the
   // sides are of one law.

@@ -149,9 +149,9 @@ TEST(NoisePyramid, HasTheVarianceOfEqualMeans) {
   bright.effect = 3;
   EXPECT_NEAR(pyramid_of({opposite, {}}, {16, 0}).kept(bright, place, 0).t(),
               -t(pyramid_of({rare, {}}, {16, 0})), 1e-9);
-  // A cell beside noise of 10 is no clearer than unseen values of that size allow.
+  // A cell beside noise of 10 / 3 is no clearer than unseen values of three times that size allow.
   CellNoise quiet = dark;
-  quiet.weights = std::sqrt(8.0) / 10;
+  quiet.weights = 3 * std::sqrt(8.0) / 10;
   const ImageEffect kept = pyramid_of({clean, {}}, {16, 0}).kept(quiet, place, 0);
   EXPECT_NEAR(log_p_two_sided(student_t_tails(kept.t(), kept.degrees)),
               log_p_constant({0, -10, 10, 16}, {3, std::sqrt(5.0 / 16)}), 1e-9);
