@@ -67,6 +67,12 @@ std::vector<Known> known_channels(const TestOutcome& test, const Pilots& pilots)
 /// Notes a gate of the pilot, but none of rows: they are judged with the test's own data.
 void note(Plan& plan, const Known& known, const stats::Gate& gate);
 
+/// Invalid for this reason; nullopt without one.
+inline std::optional<ConstantVerdict> invalid(const std::string& why) {
+  if (why.empty()) return std::nullopt;
+  return ConstantVerdict{reports::Verdict::invalid, why};
+}
+
 inline bool is_within(const Question& question) {
   return question.test->claim.relation == Relation::within;
 }

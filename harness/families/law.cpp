@@ -314,7 +314,7 @@ class DensityTheta final : public LawTheta {
 
   /// No sampler can follow a density whose integral exceeds 1. One draw where the density is 0
   /// refutes the claim, whatever its margins.
-  std::optional<ConstantVerdict> settled(const Seen& seen, const Regions&) const override {
+  std::optional<ConstantVerdict> settled(const TestOutcome&, const Seen& seen) const override {
     const DensityCells& density = density_of(seen.question);
     if (density.mass.total - 1 > density.tolerance()) {
       return ConstantVerdict{

@@ -568,16 +568,16 @@ class MeanTheta : public Theta {
     return "";
   }
 
-  std::optional<ConstantVerdict> settled(const Seen& seen, const Regions& regions) const override {
-    return judge_constant(seen, regions);
-  }
-
-  std::string lack_of_numbers(const TestOutcome& test, const Seen& seen) const override {
-    std::string reason = Theta::lack_of_numbers(test, seen);
+  std::optional<ConstantVerdict> settled(const TestOutcome& test, const Seen& seen) const override {
+    const MethodTraits& method = test.plan.method.is;
+    std::optional<ConstantVerdict> verdict;
+    // Bets test constants, too.
+    if (!method.in_range) verdict = judge_constant(seen, test.plan.regions[seen.channel]);
+    if (!verdict) verdict = Theta::settled(test, seen);
     // An exact method bounds what was never seen.
-    if (!reason.empty() || test.plan.method.is.exact) return reason;
-    reason = lost_to_rounding(seen);
-    return reason.empty() ? unseen_could_decide(test, seen) : reason;
+    if (verdict || method.exact) return verdict;
+    const std::string lost = lost_to_rounding(seen);
+    return invalid(lost.empty() ? unseen_could_decide(test, seen) : lost);
   }
 
   std::vector<Gate> gates(const TestOutcome& outcome, const Seen& seen, double x) const override {

@@ -102,10 +102,10 @@ class LogTheta : public Theta {
     return observed;
   }
 
-  std::string lack_of_numbers(const TestOutcome& test, const Seen& seen) const override {
-    const std::string reason = Theta::lack_of_numbers(test, seen);
+  std::optional<ConstantVerdict> settled(const TestOutcome& test, const Seen& seen) const override {
+    const auto verdict = Theta::settled(test, seen);
     const bool of_one_variance = is.of_spread && !is.joins_channels;
-    return reason.empty() && of_one_variance ? lack_of_spread(seen) : reason;
+    return !verdict && of_one_variance ? invalid(lack_of_spread(seen)) : verdict;
   }
 
   std::vector<Gate> gates(const TestOutcome& outcome, const Seen& seen,
@@ -316,15 +316,14 @@ class VarianceTheta final : public LogTheta {
   }
 
   /// Passes a constant sample if the claim bounds its variance from above and forbids no region, as
-  /// each channel of `worst_variance`. Returns nullopt for other claims, for samples that vary, or
-  /// if rounding may hide a variance beyond the bound.
-  std::optional<ConstantVerdict> settled(const Seen& seen, const Regions& regions) const override {
-    if (seen.question.of_two() || regions.relation != Relation::at_most ||
-        regions.has_forbidden() || !is_constant(seen, 0)) {
-      return {};
+  /// each channel of `worst_variance`, unless rounding may hide a variance beyond the bound.
+  std::optional<ConstantVerdict> settled(const TestOutcome& test, const Seen& seen) const override {
+    const Regions& regions = test.plan.regions[seen.channel];
+    const bool bounds = !seen.question.of_two() && regions.relation == Relation::at_most;
+    if (!bounds || regions.has_forbidden() || !is_constant(seen, 0) ||
+        std::pow(hidden_deviation(seen), 2) > seen.reference().value) {
+      return LogTheta::settled(test, seen);
     }
-    const double hidden = hidden_deviation(seen);
-    if (hidden * hidden > seen.reference().value) return {};
     return ConstantVerdict{reports::Verdict::pass,
                            fmt::format("every observation is {:.10g}, so the variance seen is 0, "
                                        "which is not too large; unseen values are not ruled out",

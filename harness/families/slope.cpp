@@ -202,10 +202,10 @@ class SlopeTheta final : public Theta {
     return whole_secondaries(most);
   }
 
-  std::string lack_of_numbers(const TestOutcome& test, const Seen& seen) const override {
-    const std::string reason = Theta::lack_of_numbers(test, seen);
+  std::optional<ConstantVerdict> settled(const TestOutcome& test, const Seen& seen) const override {
+    const auto verdict = Theta::settled(test, seen);
     // Costs that never vary are exact.
-    return reason.empty() && !of_costs(seen.question) ? lack_of_spread(seen) : reason;
+    return !verdict && !of_costs(seen.question) ? invalid(lack_of_spread(seen)) : verdict;
   }
 
   std::vector<Gate> gates(const TestOutcome& outcome, const Seen& seen, double x) const override {

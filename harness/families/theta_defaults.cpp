@@ -117,7 +117,7 @@ std::optional<double> Theta::power(const Sized& sized, double effect) const {
   return within ? std::max(0.0, 1 - missed) : least;
 }
 
-std::string Theta::lack_of_numbers(const TestOutcome&, const Seen& seen) const {
+std::optional<ConstantVerdict> Theta::settled(const TestOutcome&, const Seen& seen) const {
   for (std::size_t i = 0; i < seen.data.size() && !is.of_single_values; ++i) {
     if (is_constant(seen, i)) continue;
     const std::string& name = seen.question.subjects[i].estimator->name;
@@ -125,9 +125,9 @@ std::string Theta::lack_of_numbers(const TestOutcome&, const Seen& seen) const {
     for (const stats::JointMoments& powers : seen.data[i].joint) {
       if (reason.empty()) reason = beyond_doubles(powers, name);
     }
-    if (!reason.empty()) return reason;
+    if (!reason.empty()) return invalid(reason);
   }
-  return "";
+  return std::nullopt;
 }
 
 ChannelEvidence Theta::evidence(const DrawnTest& test, const Seen& seen) const {

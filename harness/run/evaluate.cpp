@@ -245,15 +245,7 @@ std::vector<ConstantVerdict> evaluate_channels(TestOutcome& outcome, const Drawn
   for (std::size_t channel = 0; channel < question.channel_count(); ++channel) {
     const std::vector<ChannelData> data = data_of(test, channel);
     const Seen seen{question, channel, data};
-    std::optional<ConstantVerdict> constant;
-    if (!outcome.plan.method.is.in_range) {  // which tests constants too
-      constant = question.theta->settled(seen, outcome.plan.regions[channel]);
-    }
-    if (!constant) {
-      const std::string reason = question.theta->lack_of_numbers(outcome, seen);
-      if (!reason.empty()) constant = {Verdict::invalid, reason};
-    }
-    if (constant) {
+    if (std::optional<ConstantVerdict> constant = question.theta->settled(outcome, seen)) {
       if (question.channel_count() > 1) {
         constant->message = question.channel_name(channel) + ": " + constant->message;
       }

@@ -161,12 +161,9 @@ class Theta {
   // ---- The test's own data
 
   virtual std::optional<ThetaError> error(const Seen&) const { return std::nullopt; }
-  /// The verdict that needs no test: on a channel without spread, or by what no law allows.
-  virtual std::optional<ConstantVerdict> settled(const Seen&, const Regions&) const {
-    return std::nullopt;
-  }
-  /// Why a channel's data cannot be tested.
-  virtual std::string lack_of_numbers(const TestOutcome&, const Seen&) const;
+  /// The verdict that needs no test: on a channel without spread, by what no law allows, or on
+  /// numbers that cannot be tested.
+  virtual std::optional<ConstantVerdict> settled(const TestOutcome&, const Seen&) const;
   /// Gates on one channel's data, beyond which tests at this critical value reject.
   virtual std::vector<Gate> gates(const TestOutcome&, const Seen&, double) const { return {}; }
   virtual ChannelEvidence evidence(const DrawnTest&, const Seen&) const;

@@ -105,9 +105,9 @@ TEST(EvidenceOfSlope, PointsWithoutSpreadAreSaidToHaveNoError) {
   }
   const TestOutcome outcome = outcome_of(*asked, "within", {.alpha = beta, .beta = beta});
   const Question& question = outcome.question;
-  const std::string reason = question.theta->lack_of_numbers(outcome, {question, 0, data});
-  EXPECT_THAT(reason, HasSubstr("`it (primaries = 1)` is 1 but for rounding"));
-  EXPECT_EQ(question.theta->lack_of_numbers(outcome, {question, 0, bent()}), "");
+  const auto verdict = question.theta->settled(outcome, {question, 0, data});
+  EXPECT_THAT(verdict.value().message, HasSubstr("`it (primaries = 1)` is 1 but for rounding"));
+  EXPECT_EQ(question.theta->settled(outcome, {question, 0, bent()}), std::nullopt);
 }
 
 }  // namespace

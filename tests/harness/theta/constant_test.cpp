@@ -45,7 +45,9 @@ ConstantVerdict judge(const ConstantCase& of) {
   for (std::size_t i = 0; i < of.seen.size(); ++i) {
     for (std::uint64_t k = 0; k < of.count; ++k) data[i].moments.add(of.seen[i]);
   }
-  return question.theta->settled({question, 0, data}, regions_of(*question.test)).value();
+  TestOutcome outcome{.question = question};
+  outcome.plan.regions = {regions_of(*question.test)};
+  return question.theta->settled(outcome, {question, 0, data}).value();
 }
 
 /// The same by bets on the declared range, at alpha = beta = .01.
