@@ -28,7 +28,7 @@ Question Theta::bind(const TestEntry& test, const Estimators& estimators) const 
     // The claim's number, or what the plugin knows of each channel.
     const auto* const number = std::get_if<Constant>(&claim.right);
     question.references = mapped(question.subjects[0].declared(), [&](const Channel& channel) {
-      return number != nullptr ? *number : claim.left.row->analytic(channel, claim.left.source);
+      return number != nullptr ? *number : analytic(claim.left, channel);
     });
   }
   return question;

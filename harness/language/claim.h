@@ -45,8 +45,8 @@ struct QuantityRow {
   bool of_a_probability = false;   ///< It takes a probability beside the estimator.
   bool tested_as_a_ratio = false;  ///< The claimed number is above 0 and exact.
   bool over_all_channels = false;
-  /// Gives what a channel's plugin knows of it, or InputError; null if no plugin knows any.
-  Constant (*analytic)(const Channel&, const Source&) = nullptr;
+  /// What a channel's plugin may know of it; null if no plugin does.
+  std::optional<double> Channel::*analytic = nullptr;
   bool takes_standard_error = false;  ///< The claimed number may have one, by `+-`.
   bool relative_to_0 = false;    ///< The truth, not the claimed number, is what per cent are of.
   bool told_by_moments = false;  ///< A recorded run of it has moments that other claims can use.

@@ -194,19 +194,15 @@ Subject values(const Source& source, const Estimators& estimators) {
   return draws(source, estimators, Draws::marginals);
 }
 
-Constant analytic_mean(const Channel& channel, const Source& source) {
-  if (channel.mean) return {*channel.mean, channel.mean_error};
-  refuse(source.where,
-         "`{}` knows no analytic mean of `{}` with these parameters; give the number, or compare "
+Constant analytic(const Quantity& quantity, const Channel& channel) {
+  const QuantityRow& row = *quantity.row;
+  if (const std::optional<double>& known = channel.*row.analytic) {
+    return {*known, row.analytic == &Channel::mean ? channel.mean_error : 0};
+  }
+  refuse(quantity.source.where,
+         "`{}` knows no analytic {} of `{}` with these parameters; give the number, or compare "
          "with an estimator that you trust",
-         source.estimator, channel.name);
-}
-
-Constant analytic_variance(const Channel& channel, const Source& source) {
-  if (channel.variance) return {*channel.variance, 0};
-  refuse(source.where,
-         "`{}` knows no exact variance of `{}` with these parameters; give the number",
-         source.estimator, channel.name);
+         quantity.source.estimator, row.word, channel.name);
 }
 
 std::string sentence_of(const Fault& fault, const Subject& subject, const std::string& when) {

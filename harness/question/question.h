@@ -136,9 +136,8 @@ Subject draws(const Source& source, const Estimators& estimators, Draws what);
 /// The source of a distribution: the channel that the part names, else a sampler.
 Subject values(const Source& source, const Estimators& estimators);
 
-/// The plugin's analytic mean. InputError if it has none.
-Constant analytic_mean(const Channel& channel, const Source& source);
-Constant analytic_variance(const Channel& channel, const Source& source);
+/// What the channel's plugin knows of it. InputError if it knows nothing.
+Constant analytic(const Quantity& quantity, const Channel& channel);
 
 /// "32 x 32 irradiance".
 std::string image_name(const ImageShape& shape);
