@@ -55,7 +55,7 @@ std::vector<std::uint64_t> counts_in(const stats::SampledCells& cells, const See
 struct Known {
   std::size_t subject;
   std::size_t channel;
-  PilotChannel pilot;
+  ChannelData pilot;
   double averaged;  ///< The pilot's values in a secondary.
   bool rows;        ///< The test's own data, not a pilot's.
   std::string label;

@@ -88,7 +88,7 @@ bool bets_on_range(const Question& question, const Pilots& pilots) {
     const Pilot* const pilot = pilot_of(side, pilots);
     if (pilot == nullptr || !side.purpose.empty() || is_recorded(side)) return false;
     for (std::size_t channel = 0; channel < side.channels.size(); ++channel) {
-      const PilotChannel seen = pilot_channel(question, subject, channel, pilots);
+      const ChannelData seen = pilot_channel(question, subject, channel, pilots);
       const stats::Range range = range_of(side, channel, seen.moments);
       const bool constant = is_constant(side, channel, seen.moments);
       if (!needed.are_finite(range) || !(range.low < range.high)) return false;
@@ -113,7 +113,7 @@ constexpr std::size_t fewest_of_a_law = 64;
 /// the range, or none. Some there may be worth half of the margin, if the pilot missed them with
 /// probability .01 at least. Of few secondaries only mean and deviation are known.
 std::shared_ptr<const stats::ValueCells> planned_law(const PlannedChannel& planned,
-                                                     const PilotChannel& pilot,
+                                                     const ChannelData& pilot,
                                                      std::span<const double> secondaries) {
   const double mean = pilot.moments.mean;
   const double deviation = planned.deviations[0];
@@ -483,7 +483,7 @@ class MeanTheta : public Theta {
     }
     planned.unit = unit_of_theta(question, channel, other_mean);
     if (bets) {
-      const PilotChannel pilot = pilot_channel(question, 0, channel, pilots);
+      const ChannelData pilot = pilot_channel(question, 0, channel, pilots);
       planned.law = planned_law(
           planned, pilot, as_secondaries(question.subjects[0], pilot.values, plan.primaries[0]));
     }

@@ -41,7 +41,7 @@ Evidence quantile(const Seen& seen) {
 double quantile_deviation(const TestOutcome& test, std::size_t subject, std::size_t channel,
                           double distance, const Pilots& pilots) {
   const double probability = test.question.test->claim.left.arguments[0];
-  const PilotChannel pilot = pilot_channel(test.question, subject, channel, pilots);
+  const ChannelData pilot = pilot_channel(test.question, subject, channel, pilots);
   const double averaged = test.question.subjects[subject].averaged(test.plan.primaries[subject]);
   if (averaged == 1) {
     const auto observed = stats::observed_quantile_deviation(pilot.values, probability, distance);

@@ -175,14 +175,11 @@ class LogTheta : public Theta {
   std::optional<double> pilot_spread(const TestOutcome& test, std::size_t subject,
                                      std::size_t channel, const Pilots& pilots) const {
     const Subject& side = test.question.subjects[subject];
-    const Pilot& pilot = *pilot_of(side, pilots);
     const double averaged = side.averaged(test.plan.primaries[subject]);
     std::optional<double> most;
     for (std::size_t i = 0; i < side.channels.size(); ++i) {
       if (!is.joins_channels && i != channel) continue;
-      const std::size_t index = side.channels[i];
-      const ChannelData seen{.moments = pilot.moments(index),
-                             .joint = joint_moments(pilot.sums->details(index))};
+      const ChannelData seen = pilot_channel(side, *pilot_of(side, pilots), i);
       const auto spread = predicted_spread(test.question, seen, averaged);
       if (spread) most = std::max(most.value_or(0), *spread);
     }

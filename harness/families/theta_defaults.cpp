@@ -142,11 +142,11 @@ std::vector<Known> known_channels(const TestOutcome& test, const Pilots& pilots)
     const Pilot* pilot = pilot_of(side, pilots);
     if (pilot == nullptr || !side.purpose.empty()) continue;
     for (std::size_t channel = 0; channel < side.channels.size(); ++channel) {
-      const PilotChannel data = pilot_channel(side, *pilot, channel);
+      ChannelData data = pilot_channel(side, *pilot, channel);
       if (is_constant(side, channel, data.moments)) continue;
       all.push_back({.subject = subject,
                      .channel = channel,
-                     .pilot = data,
+                     .pilot = std::move(data),
                      .averaged = side.averaged(test.plan.primaries[subject]),
                      .rows = side.setup->observations().has_value(),
                      .label = ", pilot of " + side.name_of(channel)});

@@ -5,7 +5,6 @@
 #include <numeric>
 #include <set>
 
-#include "harness/theta/methods.h"
 #include "stats/images/image.h"
 
 namespace assay::harness {
@@ -212,13 +211,15 @@ const Pilot* pilot_of(const Subject& subject, const Pilots& pilots) {
   return pilots.find(pilot_name(subject));
 }
 
-PilotChannel pilot_channel(const Subject& subject, const Pilot& pilot, std::size_t channel) {
+ChannelData pilot_channel(const Subject& subject, const Pilot& pilot, std::size_t channel) {
   const std::size_t index = subject.channels[channel];
-  return {.moments = pilot.moments(index), .values = pilot.values(index)};
+  return {.moments = pilot.moments(index),
+          .values = pilot.values(index),
+          .joint = joint_moments(pilot.sums->details(index))};
 }
 
-PilotChannel pilot_channel(const Question& question, std::size_t subject, std::size_t channel,
-                           const Pilots& pilots) {
+ChannelData pilot_channel(const Question& question, std::size_t subject, std::size_t channel,
+                          const Pilots& pilots) {
   const Subject& side = question.subjects[subject];
   return pilot_channel(side, *pilot_of(side, pilots), channel);
 }

@@ -15,6 +15,7 @@
 #include "harness/question/question.h"
 #include "harness/sampling/executor.h"
 #include "harness/sampling/summary.h"
+#include "harness/theta/methods.h"
 
 namespace assay::harness {
 
@@ -89,15 +90,12 @@ const Pilot* averaged_pilot_of(const Subject& subject, const Pilots& pilots);
 /// The pilot of a subject; null if there is none or it has a fault.
 const Pilot* pilot_of(const Subject& subject, const Pilots& pilots);
 
-struct PilotChannel {
-  stats::Moments moments;
-  std::span<const double> values;  ///< empty for channels that are not kept
-};
-PilotChannel pilot_channel(const Subject& subject, const Pilot& pilot, std::size_t channel);
+/// A channel as its pilot shows it. It has values if they are kept, and powers.
+ChannelData pilot_channel(const Subject& subject, const Pilot& pilot, std::size_t channel);
 /// The same for a question's subject, which must have a pilot. It looks the pilot up by name, which
 /// is too slow for every channel of an image.
-PilotChannel pilot_channel(const Question& question, std::size_t subject, std::size_t channel,
-                           const Pilots& pilots);
+ChannelData pilot_channel(const Question& question, std::size_t subject, std::size_t channel,
+                          const Pilots& pilots);
 
 /// The pilot's values of one channel as secondaries of so many primaries. They stay as they are if
 /// the subject does not average, or has rows of a file.

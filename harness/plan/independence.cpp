@@ -36,7 +36,7 @@ std::vector<Rows> rows_of(const Question& question, const Pilots& pilots, std::u
     const Pilot* pilot = pilot_of(side, pilots);
     if (!is_recorded(side) || pilot == nullptr || pilot->values(0).empty()) continue;
     for (std::size_t channel = 0; channel < side.channels.size(); ++channel) {
-      const PilotChannel data = pilot_channel(side, *pilot, channel);
+      const ChannelData data = pilot_channel(side, *pilot, channel);
       const std::size_t used = std::min<std::uint64_t>(data.values.size(), count);
       const bool finite =
           std::ranges::all_of(data.values, [](double value) { return std::isfinite(value); });
@@ -168,7 +168,7 @@ Reason too_few_to_tell(TestOutcome& test, const Pilots& pilots, std::uint64_t co
   for (const Subject& side : test.question.subjects) {
     const Pilot* pilot = pilot_of(side, pilots);
     if (!is_recorded(side) || side.setup->image() || pilot == nullptr) continue;
-    const PilotChannel first = pilot_channel(side, *pilot, 0);
+    const ChannelData first = pilot_channel(side, *pilot, 0);
     // Constants have gates of their own. A single row is no constant.
     const bool constant = first.values.size() > 1 && !(first.moments.m2 > 0);
     if (first.values.empty() || constant) continue;

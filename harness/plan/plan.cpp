@@ -48,8 +48,8 @@ std::string not_finite_in_pilot(const Question& question, const Pilots& pilots) 
 std::string no_averages(const Subject& subject, const Pilot& single, const Pilot& averaged) {
   for (std::size_t channel = 0; channel < subject.channels.size(); ++channel) {
     if (subject.declared(channel).diagnostic) continue;
-    const PilotChannel primaries = pilot_channel(subject, single, channel);
-    const PilotChannel means = pilot_channel(subject, averaged, channel);
+    const ChannelData primaries = pilot_channel(subject, single, channel);
+    const ChannelData means = pilot_channel(subject, averaged, channel);
     if (means.moments.count < means.values.size() ||
         primaries.moments.count < primaries.values.size()) {
       continue;  // not finite: another fault
