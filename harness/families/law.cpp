@@ -108,16 +108,12 @@ bool of_whole_draws(const Question& question) {
   return question.subjects[0].declared(0).name == cell_channel;
 }
 
-stats::ErrorRates rates_of(const ErrorShare& share) {
-  return {.alpha = share.alpha, .beta = share.beta, .two_sided = false};
-}
-
-stats::DistancePlan distance_plan(const TestOutcome& test, const ErrorShare& share,
+stats::DistancePlan distance_plan(const TestOutcome& test, const stats::ErrorRates& rates,
                                   double allocation = 1) {
   return {.two_samples = test.question.of_two(),
           .allocation = allocation,
           .allow = test.plan.regions[0].allow,
-          .rates = rates_of(share)};
+          .rates = rates};
 }
 
 /// True if counts in cells are tested. A plan without frozen cells is invalid.
@@ -137,19 +133,21 @@ double degrees_of_freedom(const TestOutcome& test, double observations) {
   return std::max(1.0, pools - 1);
 }
 
-stats::FitPlan fit_plan(const TestOutcome& test, const ErrorShare& share, double observations) {
+stats::FitPlan fit_plan(const TestOutcome& test, const stats::ErrorRates& rates,
+                        double observations) {
   return {.degrees_of_freedom = degrees_of_freedom(test, observations),
           .allow = test.plan.regions[0].allow,
-          .rates = rates_of(share)};
+          .rates = rates};
 }
 
 /// Fewer observations fill fewer pools, which need fewer observations. Each round's number is
 /// enough; four rounds save nearly all.
-std::optional<std::uint64_t> fit_secondaries(const TestOutcome& test, const ErrorShare& share) {
+std::optional<std::uint64_t> fit_secondaries(const TestOutcome& test,
+                                             const stats::ErrorRates& rates) {
   double observations = std::numeric_limits<double>::max();
   std::optional<std::uint64_t> enough;
   for (int round = 0; round < 4; ++round) {
-    const auto found = stats::chi_square_fit_sample_size(fit_plan(test, share, observations),
+    const auto found = stats::chi_square_fit_sample_size(fit_plan(test, rates, observations),
                                                          *test.plan.regions[0].detect);
     if (!found) return enough;
     enough = found;
@@ -257,23 +255,24 @@ class LawTheta : public Theta {
                                            const Pilots&) const override {
     const Regions& regions = test.plan.regions[0];
     if (!regions.detect) return std::nullopt;
+    const stats::ErrorRates rates = planned_rates(share, regions);
     if (in_cells(test.plan)) {
-      const auto alone = fit_secondaries(test, share);
+      const auto alone = fit_secondaries(test, rates);
       if (!alone) return impossible_secondaries;
       return test.question.of_two() ? 2 * *alone : *alone;
     }
-    return stats::ks_sample_size(distance_plan(test, share), *regions.detect);
+    return stats::ks_sample_size(distance_plan(test, rates), *regions.detect);
   }
 
   std::optional<double> detectable(const Sized& sized) const override {
     const TestOutcome& test = sized.test;
     if (in_cells(test.plan)) {
       const double observations = worth(sized);
-      return stats::chi_square_fit_detectable(fit_plan(test, sized.share(), observations),
+      return stats::chi_square_fit_detectable(fit_plan(test, sized.rates(), observations),
                                               observations);
     }
     const stats::SampleSizes sizes = sized.sizes();
-    return stats::ks_detectable(distance_plan(test, sized.share(), sizes.y / sizes.x), sizes.x);
+    return stats::ks_detectable(distance_plan(test, sized.rates(), sizes.y / sizes.x), sizes.x);
   }
 
   /// The probability, or a lower bound of it.
@@ -281,11 +280,11 @@ class LawTheta : public Theta {
     const TestOutcome& test = sized.test;
     if (in_cells(test.plan)) {
       const double observations = worth(sized);
-      return stats::chi_square_fit_power(fit_plan(test, sized.share(), observations), observations,
+      return stats::chi_square_fit_power(fit_plan(test, sized.rates(), observations), observations,
                                          effect);
     }
     const stats::SampleSizes sizes = sized.sizes();
-    return stats::ks_power_bound(distance_plan(test, sized.share(), sizes.y / sizes.x), sizes.x,
+    return stats::ks_power_bound(distance_plan(test, sized.rates(), sizes.y / sizes.x), sizes.x,
                                  effect);
   }
 

@@ -266,11 +266,11 @@ double distance_of(const Regions& regions) {
   return regions.detect ? *regions.detect - regions.allow : 0;
 }
 
-ErrorShare Sized::share() const { return test.share_at(look); }
-
 std::uint64_t Sized::secondaries() const { return test.plan.looks.sizes[look]; }
 
-stats::ErrorRates Sized::rates() const { return planned_rates(share(), channel.regions); }
+stats::ErrorRates Sized::rates() const {
+  return planned_rates(test.share_at(look), channel.regions);
+}
 
 stats::SampleSizes Sized::sizes() const {
   const auto taken = [&](std::size_t subject) {

@@ -47,7 +47,6 @@ struct Sized {
   std::size_t look;
   const PlannedChannel& channel;
 
-  ErrorShare share() const;
   std::uint64_t secondaries() const;
   /// The errors that the size is planned for, and the sizes of the two subjects; one is both.
   stats::ErrorRates rates() const;
