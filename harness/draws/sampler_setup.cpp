@@ -29,17 +29,25 @@ struct AskedDraw {
 
 enum class PointNumbers { none, densities, densities_and_evaluations };
 
-/// Draws of announced observations, fetched many at a time: a sampler in another program takes
-/// longer to be asked than to answer.
-class AskedDraws {
+/// Its observations are what `write` makes of a sampler's draws. Announced ones are fetched many at
+/// a time: a sampler in another program takes longer to be asked than to answer.
+class DrawsEstimator final : public Estimator {
  public:
-  AskedDraws(const NamedSampler& named, PointNumbers asked) : named_(named), asked_(asked) {}
+  using Write = std::function<void(const AskedDraw&, std::span<double>)>;
+  DrawsEstimator(const NamedSampler& named, PointNumbers asked, Write write)
+      : named_(named), asked_(asked), write_(std::move(write)) {}
 
-  void announce(const Announcement& next) { announced_ = next; }
+  void announce(const Announcement& next) override { announced_ = next; }
+  double seconds_elsewhere() const override { return named_.sampler->seconds_elsewhere(); }
+  void secondary(Stream& random, std::uint64_t, std::span<double> out, Cost& cost) override {
+    write_(draw_of(random), out);
+    cost.samples += 1;
+  }
 
+ private:
   /// The draw of an observation. Throws if a density is asked for and there is none, or the draw is
   /// unsound. If several cannot be fetched, each is fetched alone, and the one at fault throws.
-  const AskedDraw& of(const Stream& random) {
+  const AskedDraw& draw_of(const Stream& random) {
     const std::uint64_t index = random.observation();
     if (random.key() != key_ || index < first_ || index - first_ >= fetched_.size()) {
       fetched_.clear();
@@ -61,7 +69,6 @@ class AskedDraws {
     return fetched_[index - first_];
   }
 
- private:
   std::vector<AskedDraw> fetched(std::span<const Stream> streams) const {
     const Sampler& sampler = *named_.sampler;
     std::vector<AskedDraw> all;
@@ -89,30 +96,11 @@ class AskedDraws {
 
   const NamedSampler& named_;
   PointNumbers asked_;
+  Write write_;
   Announcement announced_{};
   StreamKey key_{};
   std::uint64_t first_ = 0;
   std::vector<AskedDraw> fetched_;
-};
-
-/// Its observations are what `write` makes of a sampler's draws.
-class DrawsEstimator final : public Estimator {
- public:
-  using Write = std::function<void(const AskedDraw&, std::span<double>)>;
-  DrawsEstimator(const NamedSampler& named, PointNumbers asked, Write write)
-      : sampler_(*named.sampler), draws_(named, asked), write_(std::move(write)) {}
-
-  void announce(const Announcement& next) override { draws_.announce(next); }
-  double seconds_elsewhere() const override { return sampler_.seconds_elsewhere(); }
-  void secondary(Stream& random, std::uint64_t, std::span<double> out, Cost& cost) override {
-    write_(draws_.of(random), out);
-    cost.samples += 1;
-  }
-
- private:
-  const Sampler& sampler_;
-  AskedDraws draws_;
-  Write write_;
 };
 
 std::size_t number_of(const NamedSampler& named, const DrawCells& cells, const AskedDraw& asked,
@@ -312,14 +300,16 @@ std::unique_ptr<Estimator> ConsistencySetup::make() const {
 
 std::optional<std::pair<std::uint64_t, std::string>> first_inconsistent(const Pool& pool,
                                                                         std::uint64_t count) {
-  const FlushDenormals flush;
   const auto& setup = dynamic_cast<const ConsistencySetup&>(*pool.setup());
-  AskedDraws draws(setup.named(), PointNumbers::densities_and_evaluations);
+  std::string found;
+  const auto look = [&](const AskedDraw& asked, std::span<double>) {
+    if (!(difference_of(asked) <= setup.sampler().rounding())) found = contradiction(asked);
+  };
+  DrawsEstimator draws(setup.named(), PointNumbers::densities_and_evaluations, look);
   draws.announce({.key = pool.key(), .first = 0, .last = count});
   for (std::uint64_t i = 0; i < count; ++i) {
-    const AskedDraw& asked = draws.of(Stream(pool.key(), i));
-    if (!(difference_of(asked) <= setup.sampler().rounding()))
-      return std::pair(i, contradiction(asked));
+    pool.draw_again(draws, i, {});
+    if (!found.empty()) return std::pair(i, found);
   }
   return std::nullopt;
 }
