@@ -46,8 +46,6 @@ std::vector<ChannelData> data_of(const DrawnTest& test, std::size_t channel);
 constexpr const char* leave_out_nonfinite =
     ": mend the renderer, or leave such pixels out by `--ignore nonfinite` (in a suite by "
     "`finite`), which hides what is wrong there";
-/// True of equal numbers, and of two that are none.
-bool same_number(double one, double other);
 /// The first draw that contradicts its sampler, in a clause; "" if none does.
 std::string first_contradiction(const DrawnTest& test);
 
