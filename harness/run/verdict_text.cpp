@@ -37,12 +37,6 @@ std::string in_channel(const TestOutcome& outcome, const ChannelOutcome& channel
   return outcome.question.channel_count() > 1 ? " in channel " + channel.name : "";
 }
 
-const ChannelOutcome& least_excluded(const TestOutcome& outcome) {
-  return *std::ranges::max_element(outcome.channels, {}, [](const ChannelOutcome& channel) {
-    return channel.decision.log_p_forbidden;
-  });
-}
-
 /// The theta that is shown as the larger. For ratios -14.3 % is shown as less than +16.2 %, though
 /// their logarithms are equally far from 0.
 double farther(double x, double y, bool ratio) {
@@ -283,7 +277,9 @@ std::string excludes_no(const std::string& what) {
 
 Reason narrate(const TestOutcome& outcome) {
   if (outcome.channels.empty()) return {};
-  const ChannelOutcome& least = least_excluded(outcome);
+  const ChannelOutcome& least = *std::ranges::max_element(
+      outcome.channels, {},
+      [](const ChannelOutcome& channel) { return channel.decision.log_p_forbidden; });
   Reason reason;
   if (outcome.verdict == Verdict::fail) reason = failed(outcome, outcome.channels.front());
   if (outcome.verdict == Verdict::inconclusive) reason = undecided(outcome, least);
