@@ -449,7 +449,7 @@ class MeanTheta : public Theta {
     return std::min(count.value_or(impossible_secondaries), most);
   }
 
-  /// With the pilot's upper limit of the variance. Returns nullopt if the channel has no spread and
+  /// The variance is the pilot's upper limit. Returns nullopt if the channel has no spread and
   /// no range bounds what the pilot missed.
   std::optional<PlannedChannel> planned(const TestOutcome& test, std::size_t channel,
                                         const Pilots& pilots) const override {
