@@ -59,11 +59,9 @@ std::string found_in_image(const Image& image) {
   if (winner.effect && winner.effect->estimate) {
     Effect size = *winner.effect;
     const bool dark = *size.estimate < 0;
-    if (dark) {
-      std::swap(size.low, size.high);
-      for (Number* each : {&size.estimate, &size.low, &size.high}) {
-        if (*each) *each = -**each;
-      }
+    if (dark) std::swap(size.low, size.high);
+    for (Number* each : {&size.estimate, &size.low, &size.high}) {
+      if (dark && *each) *each = -**each;
     }
     // The words have the sign.
     std::string interval = bracket(size);

@@ -11,7 +11,6 @@
 #include <utility>
 #include <vector>
 
-#include "stats/cells/adaptive_cells.h"
 #include "stats/cells/chi_square.h"
 #include "tests/philox.h"
 #include "tests/stats/point_by_point.h"

@@ -1,4 +1,3 @@
-#include "reports/words/display.h"
 
 #include "tests/reports/prelude.h"
 

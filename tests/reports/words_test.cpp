@@ -2,7 +2,6 @@
 
 #include "reports/formats/base64.h"
 #include "reports/words/describe.h"
-#include "reports/words/display.h"
 #include "reports/words/ledger.h"
 #include "reports/words/number.h"
 #include "reports/words/text.h"

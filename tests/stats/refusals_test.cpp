@@ -1,7 +1,6 @@
 // Each function refuses arguments that it cannot take: tests/tables/refused_arguments.txt.
 
 #include "stats/basics/adaptive_quadrature.h"
-#include "stats/basics/moments.h"
 #include "stats/cells/adaptive_cells.h"
 #include "stats/cells/chi_square.h"
 #include "stats/gates/assumption_gates.h"

@@ -1,6 +1,5 @@
 // Images with a number of lens samples for each pixel: what is planned, and what is drawn.
 
-#include "depth_of_field/image.h"
 
 #include "tests/estimators/depth_of_field/plans.h"
 #include "tests/estimators/prelude.h"

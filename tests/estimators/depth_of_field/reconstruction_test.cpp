@@ -1,7 +1,6 @@
 // Images from sparse samples: unbiased for the interpolant of the lens averages, whose distance to
 // them is known.
 
-#include "depth_of_field/reconstruction.h"
 
 #include "tests/estimators/depth_of_field/plans.h"
 #include "tests/estimators/prelude.h"

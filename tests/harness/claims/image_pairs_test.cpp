@@ -4,7 +4,6 @@
 
 #include "tests/harness/pictures.h"
 #include "tests/harness/prelude.h"
-#include "tests/philox.h"
 
 namespace assay::harness {
 namespace {

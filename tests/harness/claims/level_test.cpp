@@ -7,7 +7,6 @@
 
 #include "tests/harness/known_effects.h"
 #include "tests/harness/many_seeds.h"
-#include "tests/harness/table.h"
 #include "tests/philox.h"
 
 namespace assay::harness {

@@ -3,7 +3,6 @@
 #include "harness/image/image_evidence.h"
 
 #include "tests/harness/questions.h"
-#include "tests/philox.h"
 #include "tests/stats/calibration.h"
 
 namespace assay::harness {

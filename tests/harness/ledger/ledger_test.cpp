@@ -5,7 +5,6 @@
 #include "harness/base/text_file.h"
 #include "harness/record/record_of.h"
 #include "tests/harness/prelude.h"
-#include "tests/philox.h"
 #include "tests/stats/calibration.h"
 
 namespace assay::harness {

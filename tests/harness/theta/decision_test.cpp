@@ -3,7 +3,6 @@
 #include "stats/means/binomial.h"
 #include "stats/means/student_t.h"
 #include "tests/harness/normal_evidence.h"
-#include "tests/philox.h"
 #include "tests/stats/samples.h"
 
 namespace assay::harness {

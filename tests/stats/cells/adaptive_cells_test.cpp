@@ -1,4 +1,3 @@
-#include "stats/cells/adaptive_cells.h"
 
 #include "stats/cells/chi_square.h"
 #include "tests/stats/point_by_point.h"

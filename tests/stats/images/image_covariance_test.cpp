@@ -1,6 +1,5 @@
 #include "stats/images/image_covariance.h"
 
-#include "stats/basics/moments.h"
 #include "tests/prelude.h"
 #include "tests/stats/image_samples.h"
 

@@ -1,6 +1,5 @@
 // Compares the cells of image_pyramid, tile by tile and from blocks, with sums over each rectangle
 // by itself.
-#include "stats/basics/moments.h"
 #include "stats/pyramids/image_cells.h"
 #include "tests/prelude.h"
 #include "tests/stats/image_samples.h"
