@@ -81,7 +81,7 @@ class LogTheta : public Theta {
   std::optional<PlannedChannel> planned(const TestOutcome& test, std::size_t channel,
                                         const Pilots& pilots) const override {
     const Question& question = test.question;
-    // Of rows, variances alone are foretold.
+    // Variances alone are foretold of rows.
     if (has_rows(question) && !is.of_moments) return std::nullopt;
     if (!all_piloted(question, pilots)) return std::nullopt;
     PlannedChannel planned{.regions = test.plan.regions[channel]};
@@ -313,7 +313,7 @@ class VarianceTheta final : public LogTheta {
   }
 
   /// Passes a constant sample if the claim bounds its variance from above and forbids no region, as
-  /// each channel of `worst_variance`, unless rounding may hide a variance beyond the bound.
+  /// each channel of `worst_variance`. Rounding must hide no variance beyond the bound.
   std::optional<ConstantVerdict> settled(const TestOutcome& test, const Seen& seen) const override {
     const Regions& regions = test.plan.regions[seen.channel];
     const bool bounds = !seen.question.of_two() && regions.relation == Relation::at_most;

@@ -45,7 +45,7 @@ struct QuantityRow {
   bool of_a_probability = false;   ///< It takes a probability beside the estimator.
   bool tested_as_a_ratio = false;  ///< The claimed number is above 0 and exact.
   bool over_all_channels = false;
-  /// What a channel's plugin may know of it; null if no plugin does.
+  /// A channel's plugin may know it; null if no plugin does.
   std::optional<double> Channel::*analytic = nullptr;
   bool takes_standard_error = false;  ///< The claimed number may have one, by `+-`.
   bool relative_to_0 = false;    ///< The truth, not the claimed number, is what per cent are of.

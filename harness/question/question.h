@@ -136,7 +136,7 @@ Subject draws(const Source& source, const Estimators& estimators, Draws what);
 /// The source of a distribution: the channel that the part names, else a sampler.
 Subject values(const Source& source, const Estimators& estimators);
 
-/// What the channel's plugin knows of it. InputError if it knows nothing.
+/// The number that the channel's plugin knows. InputError if it knows none.
 Constant analytic(const Quantity& quantity, const Channel& channel);
 
 /// "32 x 32 irradiance".

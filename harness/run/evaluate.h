@@ -81,8 +81,8 @@ std::string others_at(const DrawnTest& test, const PlaceEffect& place);
 /// decided a failed claim on images.
 std::string where_it_differs(const DrawnTest& test);
 
-/// Sets the difference that this look would find: one that is the same everywhere, by the sum over
-/// the whole image, and one in a typical cell. Not if the claim allows a difference.
+/// Sets the differences that this look would find: one that is the same everywhere, by the sum, and
+/// one in a typical cell. A claim that allows a difference has none.
 void note_detectable(const TestOutcome& outcome, std::size_t look, ChannelOutcome& channel);
 
 }  // namespace assay::harness
