@@ -328,7 +328,8 @@ ImageEffect NoisePyramid::kept(const CellNoise& cell, const Rectangle& window,
                            .standard_error = std::sqrt(variance + std::abs(cell.effect) * growing),
                            .degrees = cell.degrees};
   if (!of_blocks) return effect;
-  const double log_p = log_p_with_unseen(effect, cell.weights / together(window, channel));
+  const double moved = cell.alternates ? 1 : together(window, channel);
+  const double log_p = log_p_with_unseen(effect, cell.weights / moved);
   if (log_p <= log_p_two_sided(student_t_tails(effect.t(), effect.degrees))) return effect;
   const double errors =
       student_t_quantile({Tail::upper, log_p - std::numbers::ln2}, effect.degrees);

@@ -111,7 +111,7 @@ struct CellNoise {
   double degrees = 1;
   double third = 0;         // Third cumulant of the effect, of independent elements; 0 of few.
   double weights = 0;       // The mean over the halves of the weights' sum.
-  bool alternates = false;  // Signs in turn.
+  bool alternates = false;  // Signs in turn, so that what moves together cancels.
   // The sum of the squared weights over the square of the weights' sum, between two sides with the
   // signs in turn. It is the mean of this over the halves, as is a reference's squared error. Both
   // are exact where the halves' weights are in proportion, and else too large.
