@@ -1,12 +1,10 @@
 #include "stats/basics/scores.h"
 
 #include <algorithm>
-#include <bit>
 #include <boost/sort/pdqsort/pdqsort.hpp>
 #include <boost/sort/spreadsort/float_sort.hpp>
 #include <cmath>
 #include <cstdint>
-#include <map>
 #include <numeric>
 
 namespace assay::stats {
@@ -28,21 +26,6 @@ constexpr std::uint64_t splitmix64_finalised(std::uint64_t x) {
   x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9;
   x = (x ^ (x >> 27)) * 0x94d049bb133111eb;
   return x ^ (x >> 31);
-}
-
-// The places below n in a fixed order that is as good as random, among others up to twice n.
-std::span<const std::size_t> scattered_places(std::size_t n) {
-  thread_local std::map<std::size_t, std::vector<std::size_t>> orders;
-  const auto [found, added] = orders.try_emplace(std::bit_ceil(n));
-  std::vector<std::size_t>& places = found->second;
-  if (added) {
-    places.resize(found->first);
-    std::iota(places.begin(), places.end(), 0);
-    std::ranges::sort(places, {}, [](std::size_t place) {
-      return splitmix64_finalised(place + 0x9e3779b97f4a7c15);
-    });
-  }
-  return places;
 }
 
 }  // namespace
@@ -76,17 +59,26 @@ template void midranks(std::span<const double>, std::vector<Placed<double>>&, st
 std::vector<double> centred_ranks(std::span<const double> values) {
   std::vector<Placed<double>> order;
   put_in_order(values, order);
+  struct Scattered {
+    std::uint64_t turn;  // As good as random, and another for each place.
+    std::size_t place;
+  };
   const double middle = static_cast<double>(values.size() - 1) / 2;
   std::vector<double> ranks(values.size());
-  std::vector<std::size_t> tie_of(values.size());
-  std::vector<double> next(values.size());
+  std::vector<Scattered> tie;
   for_each_tie(order, [&](std::size_t first, std::size_t end) {
-    next[first] = static_cast<double>(first) - middle;
-    for (std::size_t i = first; i < end; ++i) tie_of[order[i].place] = first;
+    tie.clear();
+    for (std::size_t i = first; i < end; ++i) {
+      const std::size_t place = order[i].place;
+      tie.push_back({splitmix64_finalised(place + 0x9e3779b97f4a7c15), place});
+    }
+    boost::sort::pdqsort_branchless(
+        tie.begin(), tie.end(),
+        [](const Scattered& a, const Scattered& b) { return a.turn < b.turn; });
+    for (std::size_t i = first; i < end; ++i) {
+      ranks[tie[i - first].place] = static_cast<double>(i) - middle;
+    }
   });
-  for (const std::size_t place : scattered_places(values.size())) {
-    if (place < values.size()) ranks[place] = next[tie_of[place]]++;
-  }
   return ranks;
 }
 

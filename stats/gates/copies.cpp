@@ -44,23 +44,31 @@ std::size_t stays_needed(double pairs) {
   return 1 + static_cast<std::size_t>(std::ceil(std::max(2.0, std::log2(pairs / chance_of_run))));
 }
 
-// Hashes of all windows of so many stays (Karp & Rabin 1987).
-std::vector<std::size_t> hashes_of(const Stays& stays, std::size_t size) {
-  constexpr std::size_t factor = 0x9e3779b97f4a7c15;
-  std::size_t power = 1;
-  for (std::size_t i = 0; i < size; ++i) power *= factor;
-  std::vector<std::size_t> from_first{0};
-  for (const Stay& stay : stays) {
-    std::size_t hash = stay.length;
-    boost::hash_combine(hash, std::bit_cast<std::uint64_t>(stay.value));
-    from_first.push_back(from_first.back() * factor + hash);
+// Hashes of all windows of so many stays, as differences of hashes from the first stay on (Karp &
+// Rabin 1987).
+class WindowHashes {
+ public:
+  WindowHashes(const Stays& stays, std::size_t size) : size_(size) {
+    constexpr std::size_t factor = 0x9e3779b97f4a7c15;
+    for (std::size_t i = 0; i < size; ++i) power_ *= factor;
+    from_first_.reserve(stays.size() + 1);
+    from_first_.push_back(0);
+    for (const Stay& stay : stays) {
+      std::size_t hash = stay.length;
+      boost::hash_combine(hash, std::bit_cast<std::uint64_t>(stay.value));
+      from_first_.push_back(from_first_.back() * factor + hash);
+    }
   }
-  std::vector<std::size_t> hashes;
-  for (std::size_t i = size; i < from_first.size(); ++i) {
-    hashes.push_back(from_first[i] - from_first[i - size] * power);
+  bool has(std::size_t window) const { return window + size_ < from_first_.size(); }
+  std::size_t operator[](std::size_t window) const {
+    return from_first_[window + size_] - from_first_[window] * power_;
   }
-  return hashes;
-}
+
+ private:
+  std::size_t size_;
+  std::size_t power_ = 1;
+  std::vector<std::size_t> from_first_;
+};
 
 // Neighbours differ. So a third value is not that two before it.
 bool has_three_values(std::span<const Stay> window) {
@@ -98,7 +106,8 @@ std::optional<RepeatedRun> run_again(std::span<const double> first, std::span<co
   constexpr std::size_t most = 4;
   const std::size_t needed = stays_needed(pairs);
   const Stays one = stays_of(first);
-  const Stays two = of_one ? one : stays_of(second);
+  const Stays other = of_one ? Stays() : stays_of(second);
+  const Stays& two = of_one ? one : other;
   // Windows that do not overlap, by their hashes. A run of twice their size less one has one.
   const std::size_t size = (needed + 1) / 2;
   std::unordered_multimap<std::size_t, std::size_t> anchors;
@@ -107,11 +116,11 @@ std::optional<RepeatedRun> run_again(std::span<const double> first, std::span<co
     if (anchors.count(hash) < most) anchors.emplace(hash, place);
   };
   if (!of_one) {
-    const std::vector<std::size_t> hashes = hashes_of(one, size);
-    for (std::size_t i = 0; i < hashes.size(); i += size) add(i, hashes[i]);
+    const WindowHashes hashes(one, size);
+    for (std::size_t i = 0; hashes.has(i); i += size) add(i, hashes[i]);
   }
-  const std::vector<std::size_t> hashes = hashes_of(two, size);
-  for (std::size_t i = 0; i < hashes.size(); ++i) {
+  const WindowHashes hashes(two, size);
+  for (std::size_t i = 0; hashes.has(i); ++i) {
     const auto [begin, end] = anchors.equal_range(hashes[i]);
     for (auto anchor = begin; anchor != end; ++anchor) {
       if (shared(one, anchor->second, two, i) < needed) continue;
