@@ -60,11 +60,12 @@ double log_durbin_lower(double distance, std::uint64_t n) {
   const std::vector<double> missed = powers_over_factorials(h);
   const double missed_twice = powers_over_factorials(std::max(0.0, 2 * h - 1))[size];
   std::vector<double> column(size);
+  std::vector<double> next(size);
   column[k - 1] = 1;
   double log_p = std::lgamma(values + 1) - values * std::log(values);
   for (std::uint64_t power = 0; power < n; ++power) {
-    std::vector<double> next(size);
-    for (std::size_t j = 1; j < size; ++j) next[j - 1] = column[j];
+    std::copy(column.begin() + 1, column.end(), next.begin());
+    next.back() = 0;
     for (std::size_t g = 1; g <= std::min(size, most); ++g) {
       for (std::size_t j = 0; j + g <= size; ++j) next[j + g - 1] += entry[g] * column[j];
     }
