@@ -156,10 +156,9 @@ void NoisePyramid::add_squares(std::size_t channel, const SquaresOfSides& square
   for (std::size_t k = 0; k < squares.size(); ++k) squares_[channel][k] += squares[k];
 }
 
-double NoisePyramid::together(const Rectangle& window, std::size_t channel) const {
+double NoisePyramid::together(std::uint32_t side, std::size_t channel) const {
   const SquaresOfSides& squares = squares_[channel];
-  const auto doublings =
-      static_cast<std::size_t>(std::bit_width(std::max(window.width, window.height)) - 1);
+  const auto doublings = static_cast<std::size_t>(std::bit_width(side) - 1);
   const std::size_t k = std::min(doublings, squares.size() - 1);
   return squares[0] > 0 ? std::max(1.0, squares[k] / squares[0]) : 1;
 }
@@ -193,8 +192,7 @@ NoisePyramid::Around NoisePyramid::around(const Rectangle& window, std::size_t c
   const std::size_t y = window.y + window.height / 2;
   Around found{.first = -PooledNoise::no_octave,
                .last = PooledNoise::no_octave,
-               .together = together(window, channel),
-               .together_of_block = together({0, 0, block, block}, channel)};
+               .together = together(block, channel)};
   for (const Level& level : levels_) {
     if (level.side < sides_around * size && &level != &levels_.back()) continue;
     const std::size_t block_of = level.index(x / level.side, y / level.side, channel);
@@ -237,7 +235,7 @@ bool NoisePyramid::of_one_law(const Around& near, double toward) const {
         count += more_rare.count;
         squares += more_rare.squares;
         rates[s] = root(count) * std::sqrt(inverse(s));
-        variance += (count > 0 ? squares / count : 1) * near.together_of_block * inverse(s) / 4;
+        variance += (count > 0 ? squares / count : 1) * near.together * inverse(s) / 4;
       }
       const double errors = toward * (rates[0] - rates[1]) / std::sqrt(variance);
       if (errors > errors_of_rates || errors < -errors_of_signs) return false;
@@ -265,18 +263,17 @@ double NoisePyramid::growth(const std::array<PooledNoise::Moments, sides_of_pair
 std::optional<double> NoisePyramid::growth_of_blocks(const CellNoise& cell, double sign,
                                                      const Rectangle& window,
                                                      std::size_t channel) const {
-  Around near = around(window, channel);
-  if (cell.alternates) near.together = 1;
+  const double moved = together(cell, window, channel);
   // Beside a reference missed light moves signs in turn either way.
   const bool either_way = cell.alternates && replicates_[1] == 0;
   const double toward = either_way || (sign < 0) != (cell.concentration < 0) ? 1 : -1;
-  std::optional<double> largest = growth_toward(cell, near, toward);
-  if (largest) *largest *= std::abs(cell.concentration) * near.together;
+  std::optional<double> largest = growth_toward(cell, around(window, channel), toward, moved);
+  if (largest) *largest *= std::abs(cell.concentration) * moved;
   return largest;
 }
 
 std::optional<double> NoisePyramid::growth_toward(const CellNoise& cell, const Around& near,
-                                                  double toward) const {
+                                                  double toward, double moved) const {
   constexpr double fewest = 2;  // One giant tells no size of the rare.
   if (of_one_law(near, toward)) return std::nullopt;
   using Signs = PooledNoise::Signs;
@@ -288,8 +285,7 @@ std::optional<double> NoisePyramid::growth_toward(const CellNoise& cell, const A
     const auto grow = [&](const std::array<PooledNoise::Moments, sides_of_pair>& here) {
       std::array<double, sides_of_pair> parts{1, 1};
       for (std::size_t s = 0; is_wide && s < sides_of_pair; ++s) {
-        const double usual =
-            here[s].second * inverse(s) * std::abs(cell.concentration) * near.together;
+        const double usual = here[s].second * inverse(s) * std::abs(cell.concentration) * moved;
         if (usual > 0) parts[s] = std::min(1.0, cell.variance[s] / usual);
       }
       largest = std::max(largest, growth(here, toward, parts));
@@ -306,7 +302,7 @@ std::optional<double> NoisePyramid::growth_toward(const CellNoise& cell, const A
 
 double NoisePyramid::own_growth(const CellNoise& cell, double sign, const Rectangle& window,
                                 std::size_t channel) const {
-  const double third = cell.third * square(together(window, channel));
+  const double third = cell.third * square(together(cell, window, channel));
   return (sign < 0 ? 1 : -1) * third / (cell.variance[0] + cell.variance[1]);
 }
 
@@ -328,8 +324,7 @@ ImageEffect NoisePyramid::kept(const CellNoise& cell, const Rectangle& window,
                            .standard_error = std::sqrt(variance + std::abs(cell.effect) * growing),
                            .degrees = cell.degrees};
   if (!of_blocks) return effect;
-  const double moved = cell.alternates ? 1 : together(window, channel);
-  const double log_p = log_p_with_unseen(effect, cell.weights / moved);
+  const double log_p = log_p_with_unseen(effect, cell.weights / together(cell, window, channel));
   if (log_p <= log_p_two_sided(student_t_tails(effect.t(), effect.degrees))) return effect;
   const double errors =
       student_t_quantile({Tail::upper, log_p - std::numbers::ln2}, effect.degrees);

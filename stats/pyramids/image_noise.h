@@ -1,7 +1,9 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <vector>
 
@@ -111,7 +113,7 @@ struct CellNoise {
   double degrees = 1;
   double third = 0;         // Third cumulant of the effect, of independent elements; 0 of few.
   double weights = 0;       // The mean over the halves of the weights' sum.
-  bool alternates = false;  // Signs in turn, so that what moves together cancels.
+  bool alternates = false;  // Signs in turn.
   // The sum of the squared weights over the square of the weights' sum, between two sides with the
   // signs in turn. It is the mean of this over the halves, as is a reference's squared error. Both
   // are exact where the halves' weights are in proportion, and else too large.
@@ -187,12 +189,15 @@ class NoisePyramid {
     std::vector<Block> blocks;
     int first = 0;
     int last = 0;
-    double together = 1;           // In the cell.
-    double together_of_block = 1;  // In a block of 8 x 8.
+    double together = 1;  // In a block of 8 x 8.
   };
   Around around(const Rectangle& window, std::size_t channel) const;
   // The squares of a side over those of their elements, at least 1; for larger cells that of 8.
-  double together(const Rectangle& window, std::size_t channel) const;
+  double together(std::uint32_t side, std::size_t channel) const;
+  // In a cell. With signs in turn, what moves together cancels.
+  double together(const CellNoise& cell, const Rectangle& window, std::size_t channel) const {
+    return cell.alternates ? 1 : together(std::max(window.width, window.height), channel);
+  }
   double inverse(std::size_t side) const;  // 1 / replicates_, 0 of a reference.
   // The side that may have missed values: the darker, or the one beside a reference.
   std::size_t lacking(double toward) const { return toward > 0 || replicates_[1] == 0 ? 0 : 1; }
@@ -206,8 +211,8 @@ class NoisePyramid {
   double log_p_with_unseen(const ImageEffect& effect, double weights) const;
   // The k3 / k2 of one element, as the blocks tell it of an effect toward a side. None where the
   // sides are of one law.
-  std::optional<double> growth_toward(const CellNoise& cell, const Around& near,
-                                      double toward) const;
+  std::optional<double> growth_toward(const CellNoise& cell, const Around& near, double toward,
+                                      double moved) const;
   double own_growth(const CellNoise& cell, double sign, const Rectangle& window,
                     std::size_t channel) const;
   std::optional<double> growth_of_blocks(const CellNoise& cell, double sign,
